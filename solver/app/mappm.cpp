@@ -1,0 +1,61 @@
+// mappm: the parallel solver. It runs as one process, or as many under mpirun.
+#include <string>
+#include <utility>
+
+#include "app/command.hpp"
+#include "app/run_loop.hpp"
+#include "parallel/communicator.hpp"
+#include "parallel/domains.hpp"
+#include "parallel/engine.hpp"
+#include "scene/reader.hpp"
+
+namespace mappm {
+
+namespace {
+
+struct DomainOptions {
+  std::string grid;  // "2x4"; empty: slabs
+  ParallelOptions engine;
+};
+
+template <int D>
+void run_scene(const Scene& scene, const RunOptions& options, const DomainOptions& domain_options,
+               const Communicator& communicator) {
+  BuiltModel<D> built = together(communicator, [&] { return make_model<D>(scene); });
+  const Domains<D> domains =
+      together(communicator, [&] { return make_domains<D>(built.model, communicator.size(), domain_options.grid); });
+  Start<D> start = start_run<D>(scene, built.model, domains.region(communicator.rank()), options, communicator);
+  ParallelEngine<D> engine(built.model, domains, communicator, std::move(start.state), domain_options.engine);
+
+  RunSetup<D> setup{scene, built.model, communicator, options, start, "mappm", built.warnings};
+  setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
+  const Vec<D, int> grid = domains.grid();
+  setup.domains.assign(grid.component, grid.component + D);
+  setup.threads = domain_options.engine.threads;
+  RunLoop<D, ParallelEngine<D>>(setup, engine).run();
+}
+
+}  // namespace
+
+}  // namespace mappm
+
+int main(int argc, char** argv) {
+  using namespace mappm;
+  const Communicator communicator(argc, argv);
+  watch_stop_signals();
+  DomainOptions domain_options;
+  const auto add_options = [&](CLI::App& command) {
+    command.add_option("--domains", domain_options.grid,
+                       "domains along x, y(, z), as in 2x4 (default: slabs along the longest side)");
+    command.add_option("--threads", domain_options.engine.threads, "threads a process")->check(CLI::PositiveNumber);
+    command.add_option("--rebalance", domain_options.engine.rebalance,
+                       "steps between moves of the domain borders to the particle load (default: at start only)");
+  };
+  return run_command(argc, argv, communicator, "mappm", add_options, [&](const RunOptions& options) {
+    const Scene scene = together(communicator, [&] { return read_scene(options.scene, options.overrides); });
+    if (scene.dimension == 2)
+      run_scene<2>(scene, options, domain_options, communicator);
+    else
+      run_scene<3>(scene, options, domain_options, communicator);
+  });
+}

@@ -1,0 +1,48 @@
+// mappm-reference: the serial solver, another program for the same scenes.
+#include <map>
+#include <string>
+#include <utility>
+
+#include "app/command.hpp"
+#include "app/run_loop.hpp"
+#include "base/single_group.hpp"
+#include "scene/reader.hpp"
+#include "serial/engine.hpp"
+
+namespace mappm {
+
+namespace {
+
+template <int D>
+void run_scene(const Scene& scene, const RunOptions& options, Neighbours neighbours, const Group& group) {
+  BuiltModel<D> built = make_model<D>(scene);
+  Start<D> start = start_run<D>(scene, built.model, Region<D>::whole_box(), options, group);
+  SerialEngine<D> engine(built.model, std::move(start.state), neighbours);
+
+  RunSetup<D> setup{scene, built.model, group, options, start, "mappm-reference", built.warnings};
+  setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
+  RunLoop<D, SerialEngine<D>>(setup, engine).run();
+}
+
+}  // namespace
+
+}  // namespace mappm
+
+int main(int argc, char** argv) {
+  using namespace mappm;
+  const SingleGroup group;
+  watch_stop_signals();
+  Neighbours neighbours = Neighbours::cells;
+  const std::map<std::string, Neighbours> searches{{"cells", Neighbours::cells}, {"all-pairs", Neighbours::all_pairs}};
+  const auto add_options = [&](CLI::App& command) {
+    command.add_option("--neighbours", neighbours, "neighbour search: cells, or all-pairs (the oracle, for small scenes)")
+        ->transform(CLI::CheckedTransformer(searches));
+  };
+  return run_command(argc, argv, group, "mappm-reference", add_options, [&](const RunOptions& options) {
+    const Scene scene = read_scene(options.scene, options.overrides);
+    if (scene.dimension == 2)
+      run_scene<2>(scene, options, neighbours, group);
+    else
+      run_scene<3>(scene, options, neighbours, group);
+  });
+}

@@ -1,0 +1,36 @@
+// The command line, as both programs understand it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace mappm {
+
+struct RunOptions {
+  std::string scene;                     // path of the scene
+  std::vector<std::string> overrides;    // KEY=VALUE
+  std::optional<std::uint64_t> steps;    // total number of steps, relaxation included; by default what the scene says
+  std::string out;                       // output folder; by default out/<scene name>
+  std::string resume;                    // checkpoint, or folder; empty: from the start
+  bool quiet = false;
+
+  /// The options that a resumed run must be given again.
+  std::string repeated() const {
+    std::string text;
+    for (const std::string& change : overrides) text += " --set " + change;
+    return out.empty() ? text : text + " --out " + out;
+  }
+
+  std::filesystem::path output_folder(const std::string& scene_name) const {
+    return out.empty() ? std::filesystem::path("out") / scene_name : std::filesystem::path(out);
+  }
+};
+
+/// Adds the options above to the command `run`.
+void add_run_options(CLI::App& command, RunOptions& options);
+
+}  // namespace mappm

@@ -1,0 +1,283 @@
+// The run itself, the same for both engines: steps, and between them samples, snapshots, checkpoints and signals.
+#pragma once
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/options.hpp"
+#include "app/poll.hpp"
+#include "app/start.hpp"
+#include "output/checkpoint_folder.hpp"
+#include "output/durable_file.hpp"
+#include "output/progress.hpp"
+#include "output/run_record.hpp"
+#include "output/series.hpp"
+#include "output/snapshot.hpp"
+#include "output/solid_series.hpp"
+#include "particles/engine.hpp"
+
+namespace mappm {
+
+/// What a run needs beside its engine. `start.state` has gone to the engine.
+template <int D>
+struct RunSetup {
+  const Scene& scene;
+  const Model<D>& model;
+  const Group& group;
+  const RunOptions& options;
+  const Start<D>& start;
+  std::string program;
+  std::vector<std::string> warnings;
+  std::vector<int> domains = {};  // an entry an axis; empty for the reference
+  int threads = 1;
+};
+
+/// Wall time in seconds, added up over several stretches.
+class StopWatch {
+ public:
+  template <class Work>
+  auto time(Work&& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+  double seconds() const { return seconds_; }
+
+ private:
+  double seconds_ = 0.0;
+};
+
+template <int D, class E>
+  requires Engine<E, D>
+class RunLoop {
+ public:
+  RunLoop(const RunSetup<D>& setup, E& engine)
+      : setup_(setup),
+        engine_(engine),
+        folder_(setup.options.output_folder(setup.scene.name)),
+        first_step_(engine.state().step),
+        last_step_(std::max(first_step_, last_step(setup.scene, setup.model, setup.options))),
+        sampled_step_(setup.start.sampled_step),
+        poll_(setup.group, first_step_) {}
+
+  /// Collective. Runs to the end or to a signal; both leave the output complete and print the last line. Throws
+  /// InputError where output cannot be written and RangeError; run.json then says so.
+  void run() {
+    begin();
+    std::string state = "finished", message;
+    try {
+      if (!advance()) {
+        state = "stopped";
+        message = fmt::format("resume with: {} run {}{} --resume {}", setup_.program, setup_.options.scene,
+                              setup_.options.repeated(), saved_.string());
+      }
+      remember(measure(setup_.model, engine_.state(), setup_.group));
+      write_record(state, message);
+    } catch (const InputError& error) {
+      write_record_of_failure("input error", error.what());
+      throw;
+    } catch (const RangeError& error) {
+      write_record_of_failure("range error", error.what());
+      throw;
+    }
+    say_on_first([&] { say_end(message); });
+  }
+
+ private:
+  std::uint64_t step() const { return engine_.state().step; }
+  bool falls_on(std::uint64_t interval) const { return interval != 0 && step() % interval == 0; }
+
+  template <class Say>
+  void say_on_first(Say&& say) {
+    if (setup_.group.is_first()) say();
+  }
+
+  void begin();
+  bool advance();
+  bool outputs_due() const;
+  void write_outputs();
+  void sample();
+  void save();
+  void remember(const Totals<D>& totals);
+  void write_record(const std::string& state, const std::string& message);
+  void write_record_of_failure(const std::string& state, const std::string& message);
+  void say_end(const std::string& message);
+
+  const RunSetup<D>& setup_;
+  E& engine_;
+  std::filesystem::path folder_;
+  std::uint64_t first_step_, last_step_, sampled_step_;
+  Poll poll_;
+  std::optional<Series<D>> series_;
+  std::optional<SolidSeries<D>> solid_series_;
+  std::optional<Progress> progress_;
+  RunRecord record_;
+  StopWatch stepping_, output_;
+  std::filesystem::path saved_;  // the last checkpoint of this run
+  std::uint64_t saved_step_ = 0;
+};
+
+template <int D, class E>
+  requires Engine<E, D>
+void RunLoop<D, E>::begin() {
+  const auto& [scene, model, group, options, start, program, warnings, domains, threads] = setup_;
+  on_first(group, [&] { make_folder(folder_); });
+  record_.program = program;
+  record_.scene_file = scene.file;
+  record_.scene_name = scene.name;
+  record_.scene_text = scene.text;
+  record_.terms = model.terms;
+  record_.warnings = warnings;
+  record_.first_step = first_step_;
+  record_.time_step = model.dt * model.units.time();
+  record_.iota = velocity_quantum * model.units.mass * model.units.velocity;
+  record_.ranks = group.size();
+  record_.threads = threads;
+  record_.domains = domains;
+
+  const UnitNames units = scene.units == Units::si ? si_unit_names(D) : UnitNames{};
+  series_.emplace(folder_, model, units, group, start.resumed_step);
+  if (scene.output.solids) solid_series_.emplace(folder_, model, units, group, start.resumed_step);
+  remember(measure(model, engine_.state(), group));
+  write_record("running", "");
+  say_on_first([&] {
+    for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+    if (!options.quiet)
+      fmt::print("{}: steps {} to {}, {} particles, terms: {}; output in {}\n", scene.name, first_step_, last_step_,
+                 record_.particles, fmt::join(term_names(model.terms), ", "), folder_.string());
+    std::fflush(stdout);
+  });
+  const ProgressStyle style = group.is_first() ? progress_style(options.quiet) : ProgressStyle::silent;
+  progress_.emplace(std::cerr, style, first_step_, last_step_, record_.particles);
+}
+
+/// Steps to the end, with all output; false if a signal ended it before.
+template <int D, class E>
+  requires Engine<E, D>
+bool RunLoop<D, E>::advance() {
+  if (!setup_.start.resumed_step.has_value()) write_outputs();
+  while (step() < last_step_) {
+    stepping_.time([&] { engine_.step(); });
+    poll_.note(step(), engine_.range_error());
+    if (!poll_.due(step()) && !outputs_due()) continue;
+    const double steps_done = static_cast<double>(step() - first_step_);
+    const bool stop = poll_.agree_to_stop(step(), stepping_.seconds() / steps_done);
+    write_outputs();
+    progress_->update(step(), stepping_.seconds() + output_.seconds());
+    if (stop && step() < last_step_) {
+      if (saved_step_ != step()) save();
+      return false;
+    }
+  }
+  return true;
+}
+
+template <int D, class E>
+  requires Engine<E, D>
+bool RunLoop<D, E>::outputs_due() const {
+  const OutputScene& output = setup_.scene.output;
+  return step() == last_step_ || falls_on(output.sample) || falls_on(output.snapshot) || falls_on(output.checkpoint);
+}
+
+template <int D, class E>
+  requires Engine<E, D>
+void RunLoop<D, E>::write_outputs() {
+  const OutputScene& output = setup_.scene.output;
+  output_.time([&] {
+    // The snapshot stands first: it shows forces since the sample before.
+    if (falls_on(output.snapshot) || step() == last_step_)
+      write_snapshot(folder_ / "snapshots", setup_.model, engine_.state(), sampled_step_, setup_.group);
+    if (falls_on(output.sample)) sample();
+  });
+  const bool checkpoint_due = falls_on(output.checkpoint) || (output.checkpoint != 0 && step() == last_step_);
+  if (checkpoint_due && step() != first_step_) save();
+}
+
+template <int D, class E>
+  requires Engine<E, D>
+void RunLoop<D, E>::sample() {
+  State<D>& state = engine_.state();
+  const Totals<D> totals = measure(setup_.model, state, setup_.group);
+  series_->add(totals, state.start_momentum, sampled_step_);
+  if (solid_series_.has_value()) solid_series_->add(state, sampled_step_);
+  for (Solid<D>& solid : state.solids) solid.sampled_impulse = solid.fluid_impulse;
+  sampled_step_ = state.step;
+  remember(totals);
+}
+
+template <int D, class E>
+  requires Engine<E, D>
+void RunLoop<D, E>::save() {
+  output_.time([&] {
+    saved_ = save_checkpoint(folder_ / checkpoint_folder_name, setup_.scene.text, engine_.state(), sampled_step_,
+                             setup_.group);
+  });
+  saved_step_ = step();
+}
+
+/// Keeps for run.json what the totals say.
+template <int D, class E>
+  requires Engine<E, D>
+void RunLoop<D, E>::remember(const Totals<D>& totals) {
+  const auto list = [](const Vec<D, Int128>& value) {
+    return std::vector<Int128>(value.component, value.component + D);
+  };
+  record_.step = totals.step;
+  record_.digest = digest_text(totals.digest());
+  record_.start_momentum = list(engine_.state().start_momentum);
+  record_.end_momentum = list(totals.momentum);
+  record_.outside_impulse = list(totals.outside_impulse);
+  record_.particles = totals.particles();
+  record_.solids = static_cast<std::uint64_t>(totals.sp_count);
+}
+
+/// Collective. Times are those of the slowest process.
+template <int D, class E>
+  requires Engine<E, D>
+void RunLoop<D, E>::write_record(const std::string& state, const std::string& message) {
+  PhaseSeconds phases = engine_.phase_seconds();
+  phases.emplace_back("output", output_.seconds());
+  phases.emplace_back("steps", stepping_.seconds());
+  std::vector<double> seconds;
+  for (const auto& phase : phases) seconds.push_back(phase.second);
+  setup_.group.maximum(seconds);
+  for (std::size_t k = 0; k < phases.size(); ++k) phases[k].second = seconds[k];
+  record_.wall_seconds = phases;
+  const double done = static_cast<double>(record_.step - first_step_);
+  record_.rate = seconds.back() > 0.0 ? done * static_cast<double>(record_.particles) / seconds.back() : 0.0;
+  record_.state = state;
+  record_.message = message;
+  on_first(setup_.group, [&] { write_run_record(folder_ / "run.json", record_); });
+}
+
+/// The state may hold nonsense: the figures stay those of the last sample. A disk that is full for a checkpoint may be
+/// full for this as well; the error that is under way matters more.
+template <int D, class E>
+  requires Engine<E, D>
+void RunLoop<D, E>::write_record_of_failure(const std::string& state, const std::string& message) {
+  progress_->finish();
+  try {
+    write_record(state, message);
+  } catch (const InputError&) {
+  }
+}
+
+template <int D, class E>
+  requires Engine<E, D>
+void RunLoop<D, E>::say_end(const std::string& message) {
+  progress_->finish();
+  if (!message.empty()) fmt::print("stopped at step {}; {}\n", record_.step, message);
+  fmt::print("digest {} step {} particles {} ranks {} particle-steps/s {:.4g}\n", record_.digest, record_.step,
+             record_.particles, record_.ranks, record_.rate);
+  std::fflush(stdout);
+}
+
+}  // namespace mappm

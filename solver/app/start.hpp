@@ -1,0 +1,58 @@
+// Where a run begins: at step 0 of its scene, or at a checkpoint.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/options.hpp"
+#include "base/group.hpp"
+#include "output/checkpoint_folder.hpp"
+#include "output/together.hpp"
+#include "scene/build.hpp"
+#include "scene/scene.hpp"
+
+namespace mappm {
+
+template <int D>
+struct Start {
+  State<D> state;
+  std::optional<std::uint64_t> resumed_step;  // none: from step 0
+  std::uint64_t sampled_step = 0;             // of the last row of the series
+  std::vector<std::string> warnings;
+};
+
+/// Collective. What of the state lies in `region`. Throws InputError.
+template <int D>
+Start<D> start_run(const Scene& scene, const Model<D>& model, const Region<D>& region, const RunOptions& options,
+                   const Group& group) {
+  Start<D> start;
+  if (options.resume.empty()) {
+    start.state = together(group, [&] { return build_state<D>(scene, model, region); });
+    start.state.start_momentum = momentum_share(start.state);
+    group.sum(std::span<Int128>(start.state.start_momentum.component));
+    return start;
+  }
+  auto found = find_checkpoint<D>(options.resume, scene.text, model, region, group);
+  start.state = std::move(found.checkpoint.state);
+  start.resumed_step = start.state.step;
+  start.sampled_step = found.checkpoint.sampled_step;
+  if (!found.warning.empty())
+    start.warnings.push_back(found.warning + "; resumed from " + found.path.string() + " instead");
+  return start;
+}
+
+/// The step at which a run ends: what the command line says, or else relaxation and duration of the scene.
+template <int D>
+std::uint64_t last_step(const Scene& scene, const Model<D>& model, const RunOptions& options) {
+  if (options.steps.has_value()) return *options.steps;
+  if (scene.run.steps > 0) return scene.run.relax + scene.run.steps;
+  // A duration of a whole number of steps may come out a rounding error above it.
+  const double steps = scene.run.duration / (model.dt * model.units.time());
+  return scene.run.relax + static_cast<std::uint64_t>(std::ceil(steps * (1.0 - 1e-12)));
+}
+
+}  // namespace mappm

@@ -1,0 +1,85 @@
+#include "output/run_record.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "build_info.hpp"
+#include "output/durable_file.hpp"
+
+namespace mappm {
+
+namespace {
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0) return "unknown";
+  return name.data();
+}
+
+/// 128-bit integers do not fit a JSON number.
+nlohmann::ordered_json decimal_strings(const std::vector<Int128>& values) {
+  auto strings = nlohmann::ordered_json::array();
+  for (const Int128 value : values) strings.push_back(fmt::format("{}", value));
+  return strings;
+}
+
+}  // namespace
+
+std::vector<std::string> term_names(const Terms& terms) {
+  std::vector<std::string> names{"fluid"};
+  const auto add = [&](bool active, const char* name) {
+    if (active) names.emplace_back(name);
+  };
+  add(terms.transport, "transport velocity");
+  add(terms.extrapolated, "extrapolated no-slip");
+  add(terms.body_force, "body force");
+  add(terms.solids, "solids");
+  add(terms.motion, "motion of solids");
+  add(terms.rotation, "rotation of solids");
+  add(terms.contact, "contact");
+  return names;
+}
+
+std::string run_record_text(const RunRecord& record) {
+  nlohmann::ordered_json json;
+  json["program"] = record.program;
+  json["version"] = build_info::version;
+  json["commit"] = build_info::commit;
+  json["compiler"] = build_info::compiler;
+  json["flags"] = build_info::flags;
+  json["host"] = host_name();
+  json["date"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  json["scene"] = {{"file", record.scene_file}, {"name", record.scene_name}, {"text", record.scene_text}};
+  json["terms"] = term_names(record.terms);
+  json["warnings"] = record.warnings;
+  json["first_step"] = record.first_step;
+  json["steps"] = record.step;
+  json["time_step"] = record.time_step;
+  json["wall_seconds"] = nlohmann::ordered_json::object();
+  for (const auto& [phase, seconds] : record.wall_seconds) json["wall_seconds"][phase] = seconds;
+  json["digest"] = record.digest;
+  json["momentum"] = {{"start", decimal_strings(record.start_momentum)},
+                      {"end", decimal_strings(record.end_momentum)},
+                      {"impulse", decimal_strings(record.outside_impulse)},
+                      {"iota", record.iota}};
+  json["ranks"] = record.ranks;
+  json["domains"] = record.domains;
+  json["threads"] = record.threads;
+  json["particles"] = record.particles;
+  json["solids"] = record.solids;
+  json["particle_steps_per_second"] = record.rate;
+  json["state"] = record.state;
+  if (!record.message.empty()) json["message"] = record.message;
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+void write_run_record(const std::filesystem::path& path, const RunRecord& record) {
+  write_durably(path, run_record_text(record));
+}
+
+}  // namespace mappm

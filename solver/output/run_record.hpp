@@ -1,0 +1,43 @@
+// run.json: what was run, with what, where and how fast. Written as a whole at the start and at the end of a run.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/fixed_point.hpp"
+#include "particles/model.hpp"
+
+namespace mappm {
+
+/// Names of the active terms, as printed at start.
+std::vector<std::string> term_names(const Terms& terms);
+
+struct RunRecord {
+  std::string program;
+  std::string scene_file, scene_name, scene_text;
+  Terms terms;
+  std::vector<std::string> warnings;
+  std::uint64_t first_step = 0, step = 0;   // of this program run: begun at, reached
+  double time_step = 0.0;                   // in scene units
+  std::vector<std::pair<std::string, double>> wall_seconds;  // by phase
+  std::string digest;                       // of the state at `step`
+  std::vector<Int128> start_momentum, end_momentum, outside_impulse;  // iota, an entry an axis
+  double iota = 0.0;                        // in scene units
+  int ranks = 1, threads = 1;
+  std::vector<int> domains;
+  std::uint64_t particles = 0, solids = 0;  // PPs and FPs; SPs
+  double rate = 0.0;                        // particle-steps/s
+  std::string state;                        // running, finished, stopped, input error, range error
+  std::string message;                      // of the error, or how to resume
+};
+
+/// The record as JSON text; commit, compiler, flags, host and date are added.
+std::string run_record_text(const RunRecord& record);
+
+/// Writes it as a whole or not at all. Throws InputError.
+void write_run_record(const std::filesystem::path& path, const RunRecord& record);
+
+}  // namespace mappm

@@ -1,0 +1,67 @@
+// The parallel engine: the paper's algorithm on a grid of domains, with two message pairs a neighbour and step.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "parallel/communicator.hpp"
+#include "parallel/domains.hpp"
+#include "parallel/fluid_pass.hpp"
+#include "parallel/halo.hpp"
+#include "particles/cell_levels.hpp"
+#include "particles/engine.hpp"
+
+namespace mappm {
+
+struct ParallelOptions {
+  int threads = 1;
+  std::uint64_t rebalance = 0;  // steps between moves of the domain borders to the particle load; 0: never
+};
+
+template <int D>
+class ParallelEngine {
+ public:
+  /// `state`: this process' share under `domains`. With `balance` the borders are first moved to the particle load.
+  ParallelEngine(const Model<D>& model, const Domains<D>& domains, const Communicator& communicator, State<D>&& state,
+                 const ParallelOptions& options);
+
+  void step();
+  State<D>& state() { return state_; }
+  const std::string& range_error() const { return range_error_; }
+  PhaseSeconds phase_seconds() const;
+  const Domains<D>& domains() const { return domains_; }
+
+  /// Moves the borders of the domains to the particle load and every particle to its new owner.
+  void rebalance();
+
+ private:
+  void start_domains();
+  void place_solids();
+  void sum_frozen_densities();
+  void move_fluid();
+  std::vector<HomeReport<D>> collect_reports();
+  void move_solids(const std::vector<HomeReport<D>>& from_others);
+
+  const Model<D>& model_;
+  const Communicator& communicator_;
+  Domains<D> domains_;
+  ParallelOptions options_;
+  std::unique_ptr<Halo<D>> halo_;
+  CellGrid<D> grid_;
+  std::unique_ptr<CellLevels<D>> levels_;
+  FluidPass<D> pass_;
+  State<D> state_;
+
+  // Of the present step:
+  std::vector<Solid<D>> copies_;
+  std::vector<SolidInStep<D>> bodies_;          // owned solids, then copies
+  std::vector<FrozenInStep<D>> frozen_;
+  std::vector<NeighbourSums<D>> frozen_sums_;
+  std::vector<SolidLoad<D>> loads_;             // of owned solids
+
+  std::string range_error_;
+  double seconds_[5] = {};
+};
+
+}  // namespace mappm

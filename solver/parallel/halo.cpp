@@ -1,0 +1,192 @@
+#include "parallel/halo.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "parallel/solid_message.hpp"
+#include "particles/frozen.hpp"
+
+namespace mappm {
+
+namespace {
+
+/// `region` widened by a length (rcut) on every side, to whole quanta.
+template <int D>
+Region<D> widened(const Model<D>& model, Region<D> region, double margin) {
+  for (int axis = 0; axis < D; ++axis) {
+    const double quanta = std::ceil(margin / model.pair.length[axis]);
+    region.low[axis] -= quanta;
+    region.high[axis] += quanta;
+  }
+  return region;
+}
+
+}  // namespace
+
+template <int D>
+Halo<D>::Halo(const Model<D>& model, const Domains<D>& domains, const Communicator& communicator)
+    : model_(model),
+      domains_(domains),
+      communicator_(communicator),
+      region_(domains.region(communicator.rank())),
+      reach_(widened(model, region_, 1.0)),
+      solid_reach_(widened(model, region_, solid_margin(model))),
+      interior_(widened(model, region_, -1.0)),
+      images_(domains.images(communicator.rank())),
+      partners_(domains.partners(communicator.rank())),
+      out_(partners_.size()),
+      in_(partners_.size()),
+      selected_(images_.size()) {
+  for (const Image<D>& image : images_) {
+    image_reach_.push_back(widened(model, image.region, 1.0));
+    image_solid_reach_.push_back(widened(model, image.region, solid_margin(model)));
+  }
+}
+
+template <int D>
+void Halo<D>::swap_messages() {
+  for (std::size_t n = 0; n < partners_.size(); ++n)
+    if (partners_[n] != communicator_.rank()) bytes_sent_ += out_[n].size();
+  communicator_.exchange(partners_, out_, in_);
+  for (Buffer& buffer : out_) buffer.clear();
+}
+
+/// The periodic image of a position that is nearest to the middle of the region.
+template <int D>
+Vec<D, double> Halo<D>::in_frame(Vec<D, double> x) const {
+  for (int axis = 0; axis < D; ++axis) {
+    const double from_middle = x[axis] - 0.5 * (region_.low[axis] + region_.high[axis]);
+    if (from_middle >= 0.5 * box_quanta) x[axis] -= box_quanta;
+    if (from_middle < -0.5 * box_quanta) x[axis] += box_quanta;
+  }
+  return x;
+}
+
+template <int D>
+void Halo<D>::exchange(State<D>& state, std::vector<Solid<D>>& copies) {
+  pack_fluid(state.fluid);
+  for (Solid<D>& solid : state.solids) solid.x = in_frame(solid.x);
+  std::vector<Solid<D>> here;
+  copies.clear();
+  for (std::size_t n = 0; n < images_.size(); ++n) {
+    Buffer& buffer = out_[static_cast<std::size_t>(images_[n].partner)];
+    std::uint64_t count = 0;
+    for (const Solid<D>& solid : state.solids) count += image_solid_reach_[n].contains(solid.x) ? 1 : 0;
+    put(buffer, count);
+    for (const Solid<D>& solid : state.solids)
+      if (image_solid_reach_[n].contains(solid.x)) pack_solid(solid, n);
+  }
+  swap_messages();
+  for (Solid<D>& solid : state.solids) {
+    if (region_.contains(solid.x))
+      here.push_back(std::move(solid));
+    else if (solid_reach_.contains(solid.x))
+      copies.push_back(std::move(solid));
+  }
+  for (std::size_t n = 0; n < partners_.size(); ++n) {
+    BufferReader reader(in_[n]);
+    unpack_fluid(reader, state.fluid);
+    while (!reader.at_end())
+      for (auto count = reader.get<std::uint64_t>(); count > 0; --count) {
+        Solid<D> solid = get_solid(reader, model_);
+        (region_.contains(solid.x) ? here : copies).push_back(std::move(solid));
+      }
+  }
+  std::sort(here.begin(), here.end(), [](const Solid<D>& a, const Solid<D>& b) { return a.id < b.id; });
+  state.solids = std::move(here);
+}
+
+/// Message to each partner: number of PPs, then their ids, then field by field. PPs near the border of the region, or
+/// beyond it, are moved to its frame.
+template <int D>
+void Halo<D>::pack_fluid(FluidParticles<D>& fluid) {
+  for (auto& chosen : selected_) chosen.clear();
+  for (std::size_t i = 0; i < fluid.size(); ++i) {
+    Vec<D, double> x;
+    for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];
+    if (interior_.contains(x)) continue;
+    x = in_frame(x);
+    for (int axis = 0; axis < D; ++axis) fluid.x(axis)[i] = x[axis];
+    for (std::size_t n = 0; n < images_.size(); ++n)
+      if (image_reach_[n].contains(x)) selected_[n].push_back(static_cast<std::uint32_t>(i));
+  }
+  for (std::size_t partner = 0; partner < partners_.size(); ++partner) {
+    Buffer& buffer = out_[partner];
+    std::uint64_t count = 0;
+    for (std::size_t n = 0; n < images_.size(); ++n)
+      if (images_[n].partner == static_cast<int>(partner)) count += selected_[n].size();
+    buffer.reserve(sizeof count * (1 + count * (1 + FluidParticles<D>::field_count)));
+    put(buffer, count);
+    for (std::size_t n = 0; n < images_.size(); ++n)
+      if (images_[n].partner == static_cast<int>(partner))
+        for (const std::uint32_t i : selected_[n]) put(buffer, fluid.id[i]);
+    for (int f = 0; f < FluidParticles<D>::field_count; ++f)
+      for (std::size_t n = 0; n < images_.size(); ++n) {
+        if (images_[n].partner != static_cast<int>(partner)) continue;
+        const double shift = f < D ? images_[n].shift[f] : 0.0;
+        const auto& values = fluid.field[static_cast<std::size_t>(f)];
+        for (const std::uint32_t i : selected_[n]) put(buffer, values[i] + shift);
+      }
+  }
+}
+
+template <int D>
+void Halo<D>::unpack_fluid(BufferReader& reader, FluidParticles<D>& fluid) {
+  const auto count = reader.get<std::uint64_t>();
+  const std::size_t first = fluid.size();
+  fluid.resize(first + count);
+  for (std::size_t i = first; i < fluid.size(); ++i) fluid.id[i] = reader.get<std::uint64_t>();
+  for (auto& values : fluid.field)
+    for (std::size_t i = first; i < fluid.size(); ++i) values[i] = reader.get<double>();
+}
+
+/// The new owner receives the densities of all FPs and the contacts; a copy only the densities it can need.
+template <int D>
+void Halo<D>::pack_solid(const Solid<D>& solid, std::size_t image) {
+  const bool migrates = images_[image].region.contains(solid.x);
+  std::vector<std::uint32_t> frozen;
+  if (migrates) {
+    frozen = all_frozen(solid);
+  } else {
+    const SolidInStep<D> body = solid_in_step(model_, solid);
+    for (std::uint32_t k = 0; k < solid.density.size(); ++k)
+      if (image_reach_[image].contains(place(solid, body.velocity, body.shape->frozen[k], model_.pair.length).x))
+        frozen.push_back(k);
+  }
+  put_solid(out_[static_cast<std::size_t>(images_[image].partner)], solid, solid.x + images_[image].shift, frozen,
+            migrates);
+}
+
+template <int D>
+std::vector<HomeReport<D>> Halo<D>::send_home(const std::vector<Solid<D>>& copies,
+                                              std::vector<HomeReport<D>>&& reports) {
+  for (std::size_t c = 0; c < copies.size(); ++c) {
+    if (reports[c].index.empty()) continue;
+    const int owner = domains_.owner(copies[c].x);
+    const auto partner = std::lower_bound(partners_.begin(), partners_.end(), owner) - partners_.begin();
+    Buffer& buffer = out_[static_cast<std::size_t>(partner)];
+    put(buffer, reports[c].solid);
+    put(buffer, reports[c].fluid);
+    put(buffer, reports[c].index);
+    put(buffer, reports[c].density);
+  }
+  swap_messages();
+  std::vector<HomeReport<D>> received;
+  for (const Buffer& buffer : in_) {
+    BufferReader reader(buffer);
+    while (!reader.at_end()) {
+      HomeReport<D>& report = received.emplace_back();
+      report.solid = reader.get<std::uint64_t>();
+      report.fluid = reader.get<SolidImpulse<D>>();
+      reader.get(report.index);
+      reader.get(report.density);
+    }
+  }
+  return received;
+}
+
+template class Halo<2>;
+template class Halo<3>;
+
+}  // namespace mappm

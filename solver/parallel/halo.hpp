@@ -1,0 +1,68 @@
+// The two message pairs per neighbour and step.
+//   1. `exchange`: every particle and solid goes to each region in whose margin it lies now. Whether the receiver owns
+//      it (a migrant) or holds it as a ghost or copy follows from its position alone, so migration and halo are one
+//      message: the paper's steps (i)-(iv) and (x)-(xi).
+//   2. `send_home`: what FPs of copies received from the PPs of this region goes to the owner of the solid: the paper's
+//      steps (vii) and (viii).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "parallel/communicator.hpp"
+#include "parallel/domains.hpp"
+#include "parallel/message.hpp"
+#include "particles/solid_step.hpp"
+
+namespace mappm {
+
+/// What one process found out about a copy of a solid: the load of the FPs in its region, and their new densities.
+template <int D>
+struct HomeReport {
+  std::uint64_t solid = 0;                // id
+  SolidImpulse<D> fluid;
+  std::vector<std::uint32_t> index;       // of FPs in the shape
+  std::vector<double> density;            // theirs
+};
+
+template <int D>
+class Halo {
+ public:
+  Halo(const Model<D>& model, const Domains<D>& domains, const Communicator& communicator);
+
+  const Region<D>& region() const { return region_; }
+  /// The region and its margin of rcut: where FPs and ghosts matter.
+  const Region<D>& reach() const { return reach_; }
+
+  /// On entry `state` holds what this process owned before the particles moved, at their new positions in the box. On
+  /// return it holds its particles and ghosts, all in its frame, and its solids; `copies` holds copies of solids.
+  void exchange(State<D>& state, std::vector<Solid<D>>& copies);
+
+  /// Delivers reports to the owners of the solids; returns those for solids owned here.
+  std::vector<HomeReport<D>> send_home(const std::vector<Solid<D>>& copies, std::vector<HomeReport<D>>&& reports);
+
+  /// Bytes sent to other processes so far, and messages.
+  std::uint64_t bytes_sent() const { return bytes_sent_; }
+
+ private:
+  Vec<D, double> in_frame(Vec<D, double> x) const;
+  void pack_fluid(FluidParticles<D>& fluid);
+  void pack_solid(const Solid<D>& solid, std::size_t image);
+  void unpack_fluid(BufferReader& reader, FluidParticles<D>& fluid);
+  void swap_messages();
+
+  const Model<D>& model_;
+  const Domains<D>& domains_;
+  const Communicator& communicator_;
+  Region<D> region_, reach_, solid_reach_;
+  Region<D> interior_;                      // particles here are needed by nobody else
+  std::vector<Image<D>> images_;
+  std::vector<Region<D>> image_reach_;      // margin of rcut around each image
+  std::vector<Region<D>> image_solid_reach_;
+  std::vector<int> partners_;
+  std::vector<Buffer> out_, in_;
+  std::vector<std::vector<std::uint32_t>> selected_;  // PPs chosen for each image
+  std::uint64_t bytes_sent_ = 0;
+};
+
+}  // namespace mappm

@@ -1,0 +1,57 @@
+// Byte buffers as sequences of trivially copyable values.
+#pragma once
+
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
+#include "parallel/communicator.hpp"
+
+namespace mappm {
+
+template <class T>
+void put(Buffer& buffer, const T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  const std::size_t at = buffer.size();
+  buffer.resize(at + sizeof(T));
+  std::memcpy(buffer.data() + at, &value, sizeof(T));
+}
+
+template <class T>
+void put(Buffer& buffer, const std::vector<T>& values) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  put(buffer, values.size());
+  if (values.empty()) return;
+  const std::size_t at = buffer.size();
+  buffer.resize(at + values.size() * sizeof(T));
+  std::memcpy(buffer.data() + at, values.data(), values.size() * sizeof(T));
+}
+
+/// Reads back, in the same order, what `put` wrote.
+class BufferReader {
+ public:
+  explicit BufferReader(const Buffer& buffer) : buffer_(buffer) {}
+  bool at_end() const { return at_ == buffer_.size(); }
+
+  template <class T>
+  T get() {
+    static_assert(std::is_trivially_copyable_v<T>);
+    T value;
+    std::memcpy(&value, buffer_.data() + at_, sizeof(T));
+    at_ += sizeof(T);
+    return value;
+  }
+  template <class T>
+  void get(std::vector<T>& values) {
+    values.resize(get<std::size_t>());
+    if (values.empty()) return;
+    std::memcpy(values.data(), buffer_.data() + at_, values.size() * sizeof(T));
+    at_ += values.size() * sizeof(T);
+  }
+
+ private:
+  const Buffer& buffer_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace mappm

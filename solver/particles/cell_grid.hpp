@@ -1,0 +1,92 @@
+// Cells of one size over a region and its margin, and the order of particles by cell. Cells are a fraction of rcut
+// (several cells to a cutoff trim the candidate pairs); rows along x are contiguous in memory.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "particles/state.hpp"
+
+namespace mappm {
+
+template <int D>
+class CellGrid {
+ public:
+  /// Cells whose borders fall on those of the region; beyond it, `per_cutoff` layers of margin cells on each side.
+  /// length: of a position quantum in rcut, per axis.
+  void fit(const Region<D>& region, const Vec<D, double>& length, int per_cutoff) {
+    region_ = region;
+    margin_ = per_cutoff;
+    std::size_t cells = 1;
+    for (int axis = 0; axis < D; ++axis) {
+      const double quanta = region.high[axis] - region.low[axis];
+      // A little wider than rcut / per_cutoff, so that rounding never hides a pair within the cutoff.
+      inner_[axis] = std::max(1, static_cast<int>(quanta * length[axis] * per_cutoff * (1.0 - 1e-6)));
+      scale_[axis] = inner_[axis] / quanta;
+      width_[axis] = quanta * length[axis] / inner_[axis];
+      count_[axis] = inner_[axis] + 2 * margin_;
+      cells *= static_cast<std::size_t>(count_[axis]);
+    }
+    start_.assign(cells + 1, 0);
+  }
+
+  /// Cell coordinate on one axis, margin cells included; exact about which side of the region's border x lies on.
+  int coordinate(int axis, double x) const {
+    int cell = static_cast<int>(std::floor((x - region_.low[axis]) * scale_[axis]));
+    cell = x < region_.high[axis] ? std::min(cell, inner_[axis] - 1) : std::max(cell, inner_[axis]);
+    return std::clamp(cell + margin_, 0, count_[axis] - 1);
+  }
+  std::size_t row(const Vec<D, int>& cell) const {
+    std::size_t flat = 0;
+    for (int axis = D - 1; axis > 0; --axis) flat = flat * static_cast<std::size_t>(count_[axis]) + cell[axis];
+    return flat * static_cast<std::size_t>(count_[0]);
+  }
+  bool is_inner(int axis, int cell) const { return cell >= margin_ && cell < margin_ + inner_[axis]; }
+
+  int margin() const { return margin_; }
+  int count(int axis) const { return count_[axis]; }
+  int inner(int axis) const { return inner_[axis]; }
+  double width(int axis) const { return width_[axis]; }
+  /// Particles of cell c are [start(c), start(c + 1)) after `sort`.
+  std::uint32_t start(std::size_t cell) const { return start_[cell]; }
+
+  /// Orders the particles by cell (counting sort). Field arrays keep `padding` valid entries behind the last particle.
+  void sort(FluidParticles<D>& fluid) {
+    const std::size_t particles = fluid.size();
+    target_.resize(particles);
+    std::fill(start_.begin(), start_.end(), 0u);
+    for (std::size_t i = 0; i < particles; ++i) {
+      Vec<D, int> cell;
+      for (int axis = 0; axis < D; ++axis) cell[axis] = coordinate(axis, fluid.x(axis)[i]);
+      const auto index = static_cast<std::uint32_t>(row(cell) + static_cast<std::size_t>(cell[0]));
+      target_[i] = index;
+      ++start_[index + 1];
+    }
+    for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
+    for (std::size_t i = 0; i < particles; ++i) target_[i] = start_[target_[i]]++;
+    for (std::size_t c = start_.size() - 1; c > 0; --c) start_[c] = start_[c - 1];
+    start_[0] = 0;
+    permute(fluid.id, scratch_id_);
+    for (auto& values : fluid.field) permute(values, scratch_);
+  }
+
+ private:
+  template <class T>
+  void permute(std::vector<T>& values, std::vector<T>& scratch) const {
+    scratch.resize(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) scratch[target_[i]] = values[i];
+    values.swap(scratch);
+  }
+
+  Region<D> region_;
+  int margin_ = 1;
+  Vec<D, int> inner_, count_;
+  Vec<D, double> scale_, width_;
+  std::vector<std::uint32_t> start_, target_;
+  std::vector<double> scratch_;
+  std::vector<std::uint64_t> scratch_id_;
+};
+
+}  // namespace mappm

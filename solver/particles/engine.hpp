@@ -1,0 +1,27 @@
+// What an engine offers to the run loop. The serial and the parallel engine both model this concept.
+#pragma once
+
+#include <concepts>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "particles/state.hpp"
+
+namespace mappm {
+
+/// Wall seconds spent so far, by phase of the step ("exchange", "sort", "pairs", "solids", "integrate").
+using PhaseSeconds = std::vector<std::pair<std::string, double>>;
+
+template <class E, int D>
+concept Engine = requires(E engine, const E constant) {
+  /// Advances the state by one step. Never throws on a value out of range: it is recorded in range_error().
+  engine.step();
+  /// What this process owns, valid between steps. Bookkeeping of the series (sampled_impulse) may be changed.
+  { engine.state() } -> std::same_as<State<D>&>;
+  /// Empty, or the first value that left its range on this process: step, particle, value and likely cause.
+  { constant.range_error() } -> std::convertible_to<std::string>;
+  { constant.phase_seconds() } -> std::convertible_to<PhaseSeconds>;
+};
+
+}  // namespace mappm

@@ -1,0 +1,196 @@
+#include "particles/solid_step.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace mappm {
+
+namespace {
+
+template <int D>
+Vec<D, double> kept_stretch(const Solid<D>& solid, std::uint64_t partner, std::uint32_t own, std::uint32_t other) {
+  for (const Contact<D>& contact : solid.contacts)
+    if (contact.partner == partner && contact.own == own && contact.other == other) return contact.stretch;
+  return {};
+}
+
+template <int D>
+double inverse_mass(const SolidInStep<D>& body) {
+  return body.solid->motion == SolidMotion::free ? 1.0 / body.shape->mass : 0.0;
+}
+
+template <int D>
+Vec<D, double> point_velocity(const SolidInStep<D>& body, const Vec<D, double>& lever) {
+  return body.velocity.linear + rotational_velocity<D, double>(body.velocity.angular, lever);
+}
+
+/// Impulse of a force over one step, rounded once.
+template <int D>
+Vec<D, Int128> contact_impulse(const Vec<D, double>& force, double dt) {
+  Vec<D, Int128> impulse;
+  for (int axis = 0; axis < D; ++axis) impulse[axis] = to_fixed_wide(force[axis] * dt / velocity_quantum);
+  return impulse;
+}
+
+template <int D>
+void apply(const Vec<D, Int128>& impulse, const Vec<D, double>& lever, SolidImpulse<D>& to) {
+  Vec<D, double> value;
+  for (int axis = 0; axis < D; ++axis) value[axis] = static_cast<double>(impulse[axis]);
+  to.linear += impulse;
+  to.angular += torque_impulse<D>(lever, value);
+}
+
+/// Vector from `b` to `a` by the nearest image, in rcut.
+template <int D>
+Vec<D, double> vector_between(const Model<D>& model, const Vec<D, double>& a, const Vec<D, double>& b) {
+  Vec<D, double> r;
+  for (int axis = 0; axis < D; ++axis) r[axis] = nearest_difference(a[axis], b[axis]) * model.pair.length[axis];
+  return r;
+}
+
+}  // namespace
+
+template <int D>
+void add_contacts(const Model<D>& model, const SolidInStep<D>& one, const SolidInStep<D>& other, SolidLoad<D>& load) {
+  const bool first = one.solid->id < other.solid->id;
+  const SolidInStep<D>& low = first ? one : other;
+  const SolidInStep<D>& high = first ? other : one;
+  const Vec<D, double> centres = vector_between(model, low.solid->x, high.solid->x);
+  const double reach = low.shape->reach + high.shape->reach;
+  if (dot(centres, centres) >= reach * reach) return;
+  for (std::uint32_t a = 0; a < low.shape->balls.size(); ++a)
+    for (std::uint32_t b = 0; b < high.shape->balls.size(); ++b) {
+      const Ball<D>& ball_a = low.shape->balls[a];
+      const Ball<D>& ball_b = high.shape->balls[b];
+      const Vec<D, double> offset_a = rotate(low.solid->orientation, ball_a.offset);
+      const Vec<D, double> offset_b = rotate(high.solid->orientation, ball_b.offset);
+      const Vec<D, double> r = centres + offset_a - offset_b;
+      const double square = dot(r, r);
+      const double touch = ball_a.contact_radius + ball_b.contact_radius;
+      if (square >= touch * touch || square == 0.0) continue;
+      const double distance = square_root(square);
+      ContactPair<D> pair;
+      pair.normal = (1.0 / distance) * r;
+      pair.overlap = touch - distance;
+      const Vec<D, double> lever_a = offset_a - (ball_a.contact_radius - 0.5 * pair.overlap) * pair.normal;
+      const Vec<D, double> lever_b = offset_b + (ball_b.contact_radius - 0.5 * pair.overlap) * pair.normal;
+      pair.velocity = point_velocity(low, lever_a) - point_velocity(high, lever_b);
+      pair.inverse_mass_i = inverse_mass(low);
+      pair.inverse_mass_j = inverse_mass(high);
+      pair.inverse_radius_i = 1.0 / ball_a.contact_radius;
+      pair.inverse_radius_j = 1.0 / ball_b.contact_radius;
+      const std::uint32_t own = first ? a : b, partner_ball = first ? b : a;
+      pair.stretch = kept_stretch(*one.solid, other.solid->id, own, partner_ball);
+      const ContactResult<D> result = contact_force(model.contact, pair, model.dt);
+      const Vec<D, Int128> on_low = contact_impulse(result.force, model.dt);
+      apply(first ? on_low : -on_low, first ? lever_a : lever_b, load.contact);
+      load.kept.push_back({other.solid->id, own, partner_ball, result.stretch});
+    }
+}
+
+template <int D>
+void add_face_contacts(const Model<D>& model, const SolidInStep<D>& one, SolidLoad<D>& load) {
+  for (const WallFace<D>& face : model.faces)
+    for (std::uint32_t a = 0; a < one.shape->balls.size(); ++a) {
+      const Ball<D>& ball = one.shape->balls[a];
+      const Vec<D, double> offset = rotate(one.solid->orientation, ball.offset);
+      const int axis = face.axis;
+      const double centre = nearest_difference(one.solid->x[axis], face.x) * model.pair.length[axis] + offset[axis];
+      const double height = face.sign * centre;
+      if (height >= ball.contact_radius || height <= -ball.contact_radius) continue;
+      ContactPair<D> pair;
+      pair.normal = {};
+      pair.normal[axis] = face.sign;
+      pair.overlap = ball.contact_radius - height;
+      const Vec<D, double> lever = offset - (ball.contact_radius - 0.5 * pair.overlap) * pair.normal;
+      pair.velocity = point_velocity(one, lever) - face.velocity;
+      pair.inverse_mass_i = inverse_mass(one);
+      pair.inverse_mass_j = 0.0;
+      pair.inverse_radius_i = 1.0 / ball.contact_radius;
+      pair.inverse_radius_j = 0.0;
+      pair.stretch = kept_stretch(*one.solid, face.id, a, 0);
+      const ContactResult<D> result = contact_force(model.contact, pair, model.dt);
+      apply(contact_impulse(result.force, model.dt), lever, load.wall);
+      load.kept.push_back({face.id, a, 0, result.stretch});
+    }
+}
+
+template <int D>
+void finish_step(const Model<D>& model, std::uint64_t step, Solid<D>& solid, SolidLoad<D>&& load,
+                 Vec<D, Int128>& outside_impulse) {
+  const Shape<D>& shape = model.shapes[solid.shape];
+  solid.fluid_impulse += load.fluid.linear;
+  std::sort(load.kept.begin(), load.kept.end(), [](const Contact<D>& a, const Contact<D>& b) {
+    return std::tie(a.partner, a.own, a.other) < std::tie(b.partner, b.own, b.other);
+  });
+  solid.contacts = std::move(load.kept);
+  SolidImpulse<D> total = load.fluid;
+  total.linear += load.contact.linear;
+  total.angular += load.contact.angular;
+  if (solid.motion != SolidMotion::free) {
+    outside_impulse -= total.linear;
+  } else {
+    total.linear += load.wall.linear;
+    total.angular += load.wall.angular;
+    outside_impulse += load.wall.linear;
+    if (model.terms.body_force && step >= model.relax)
+      for (int axis = 0; axis < D; ++axis) {
+        const double impulse = shape.mass * model.solid_acceleration[axis] * model.dt;
+        const Int128 kick = to_fixed_wide(impulse / velocity_quantum);
+        total.linear[axis] += kick;
+        outside_impulse[axis] += kick;
+      }
+  }
+  advance(solid, shape, total, model.dt, model.pair.length);
+}
+
+template <int D>
+ParticleStep<D> particle_step(const Model<D>& model, std::uint64_t step) {
+  ParticleStep<D> constants;
+  for (int axis = 0; axis < D; ++axis) {
+    constants.drift[axis] = model.dt / model.pair.length[axis];
+    constants.largest_drift[axis] = 0.25 / model.pair.length[axis];
+  }
+  constants.kick = model.terms.body_force && step >= model.relax ? model.fluid_kick : Vec<D, double>{};
+  constants.self_density = model.self_density;
+  constants.lowest_density = 0.1 * model.rest_density;
+  constants.highest_density = 10.0 * model.rest_density;
+  return constants;
+}
+
+template <int D>
+std::string range_message(RangeFault fault, std::uint64_t step, std::uint64_t id, const Vec<D, double>& v,
+                          const NeighbourSums<D>& sums) {
+  switch (fault) {
+    case RangeFault::impulse:
+      return fmt::format("step {}: particle {}: impulse {:.3g} m c is too large for its fixed-point range; "
+                         "particles overlap or the step is too long",
+                         step, id, static_cast<double>(sums.impulse[0]) * velocity_quantum);
+    case RangeFault::displacement:
+      return fmt::format("step {}: particle {}: moves more than rcut/4 in one step (velocity {:.3g} c before it); "
+                         "the step is too long or the sound speed too low",
+                         step, id, square_root(dot(v, v)));
+    case RangeFault::density:
+      return fmt::format("step {}: particle {}: density {:.3g} PPs per rcut^{} is outside 0.1 to 10 times rest; "
+                         "the fluid tears or collapses: raise the sound speed or resolve the gap",
+                         step, id, static_cast<double>(sums.density) * density_quantum, D);
+    case RangeFault::none: break;
+  }
+  return {};
+}
+
+#define MAPPM_INSTANTIATE(D)                                                                                        \
+  template void add_contacts<D>(const Model<D>&, const SolidInStep<D>&, const SolidInStep<D>&, SolidLoad<D>&);      \
+  template void add_face_contacts<D>(const Model<D>&, const SolidInStep<D>&, SolidLoad<D>&);                        \
+  template void finish_step<D>(const Model<D>&, std::uint64_t, Solid<D>&, SolidLoad<D>&&, Vec<D, Int128>&);         \
+  template ParticleStep<D> particle_step<D>(const Model<D>&, std::uint64_t);                                        \
+  template std::string range_message<D>(RangeFault, std::uint64_t, std::uint64_t, const Vec<D, double>&,            \
+                                        const NeighbourSums<D>&);
+MAPPM_INSTANTIATE(2)
+MAPPM_INSTANTIATE(3)
+#undef MAPPM_INSTANTIATE
+
+}  // namespace mappm

@@ -1,0 +1,60 @@
+// One step of the solids, shared by both engines: contacts between solids, and the kick and drift of each.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "particles/model.hpp"
+#include "particles/state.hpp"
+#include "physics/pseudo_particle.hpp"
+
+namespace mappm {
+
+/// A solid with its velocity and what acts on it in this step.
+template <int D>
+struct SolidInStep {
+  const Solid<D>* solid = nullptr;
+  const Shape<D>* shape = nullptr;
+  RigidVelocity<D> velocity;
+};
+
+template <int D>
+SolidInStep<D> solid_in_step(const Model<D>& model, const Solid<D>& solid) {
+  const Shape<D>& shape = model.shapes[solid.shape];
+  return {&solid, &shape, rigid_velocity(solid, shape)};
+}
+
+/// What acts on one solid in one step, and the contacts that it keeps.
+template <int D>
+struct SolidLoad {
+  SolidImpulse<D> fluid;    // summed over its FPs
+  SolidImpulse<D> contact;  // from other solids
+  SolidImpulse<D> wall;     // from faces of walls: an impulse from outside the system
+  std::vector<Contact<D>> kept;
+};
+
+/// Adds the contacts of `one` with `other` to its load. Each contact is evaluated from the smaller to the larger id,
+/// so that the owners of both solids find the same bits.
+template <int D>
+void add_contacts(const Model<D>& model, const SolidInStep<D>& one, const SolidInStep<D>& other, SolidLoad<D>& load);
+
+/// The same with the faces of walls.
+template <int D>
+void add_face_contacts(const Model<D>& model, const SolidInStep<D>& one, SolidLoad<D>& load);
+
+/// Ends the step of a solid that this process owns: body force, kick, drift. What a solid that is not free receives
+/// goes to the outside; what walls and body forces give comes from it.
+template <int D>
+void finish_step(const Model<D>& model, std::uint64_t step, Solid<D>& solid, SolidLoad<D>&& load,
+                 Vec<D, Int128>& outside_impulse);
+
+/// Constants of the step of a PP; the body force acts from step `model.relax` on.
+template <int D>
+ParticleStep<D> particle_step(const Model<D>& model, std::uint64_t step);
+
+/// Text for a value out of range: step, particle, value and likely cause.
+template <int D>
+std::string range_message(RangeFault fault, std::uint64_t step, std::uint64_t id, const Vec<D, double>& v,
+                          const NeighbourSums<D>& sums);
+
+}  // namespace mappm

@@ -1,0 +1,77 @@
+// The state of a run: the PPs as one table of fields, and the solids. FPs are not stored: a solid and its shape
+// determine where they are; only their densities belong to the state.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/digest.hpp"
+#include "base/fixed_point.hpp"
+#include "base/vec.hpp"
+#include "physics/rigid_body.hpp"
+
+namespace mappm {
+
+/// The field table of the PPs: it feeds allocation, halo, output, checkpoint and digest. All values are integers,
+/// kept in doubles that hold them exactly: x in position quanta, v in multiples of velocity_quantum (PP mass 1, so
+/// this is the momentum too), density in multiples of density_quantum.
+template <int D>
+struct FluidParticles {
+  static constexpr int field_count = 2 * D + 1;
+  std::vector<std::uint64_t> id;
+  std::array<std::vector<double>, field_count> field;
+
+  std::vector<double>& x(int axis) { return field[axis]; }
+  const std::vector<double>& x(int axis) const { return field[axis]; }
+  std::vector<double>& v(int axis) { return field[D + axis]; }
+  const std::vector<double>& v(int axis) const { return field[D + axis]; }
+  std::vector<double>& density() { return field[2 * D]; }
+  const std::vector<double>& density() const { return field[2 * D]; }
+
+  std::size_t size() const { return id.size(); }
+  void resize(std::size_t count) {
+    id.resize(count);
+    for (auto& values : field) values.resize(count);
+  }
+  void reserve(std::size_t count) {
+    id.reserve(count);
+    for (auto& values : field) values.reserve(count);
+  }
+};
+
+/// A box of positions: its particles are those with low <= x < high on every axis (position quanta).
+template <int D>
+struct Region {
+  Vec<D, double> low, high;
+  bool contains(const Vec<D, double>& x) const {
+    for (int axis = 0; axis < D; ++axis)
+      if (x[axis] < low[axis] || x[axis] >= high[axis]) return false;
+    return true;
+  }
+  static Region whole_box() {
+    Region region;
+    for (int axis = 0; axis < D; ++axis) region.high[axis] = box_quanta;
+    return region;
+  }
+};
+
+/// What a process owns. The momentum ledger is this process' share; sums over processes are the totals.
+template <int D>
+struct State {
+  std::uint64_t step = 0;
+  FluidParticles<D> fluid;
+  std::vector<Solid<D>> solids;           // sorted by id
+  Vec<D, Int128> outside_impulse{};       // received from body forces and from what holds fixed solids, iota
+  Vec<D, Int128> start_momentum{};        // total at step 0; the same on every process
+};
+
+/// This process' share of the digest: shares add up modulo 2^64.
+template <int D>
+std::uint64_t digest_share(const State<D>& state);
+
+/// This process' share of the total momentum of PPs and SPs, iota.
+template <int D>
+Vec<D, Int128> momentum_share(const State<D>& state);
+
+}  // namespace mappm

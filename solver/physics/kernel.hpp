@@ -1,0 +1,99 @@
+// Smoothing kernels. A kernel of support 1 (the cutoff) is given by three profiles of q = r / rcut:
+//   weight(q)    the profile of W, which sums to the density
+//   gradient(q)  the profile of G = -W'(r) / r, which carries every force
+//   rate(q)      -weight'(q) / q, which advances the summed density by the continuity equation
+// They take the pair distance already limited to q <= 1, so that a pair beyond the cutoff contributes exactly zero.
+#pragma once
+
+#include "base/lanes.hpp"
+
+namespace mappm {
+
+enum class KernelKind { wendland_c2, lucy, mps };
+
+template <class Real>
+struct KernelProfile {
+  Real weight, gradient, rate;
+};
+
+/// Wendland C2 (Wendland 1995): W ~ (1-q)^4 (1+4q), -W'/q = 20 (1-q)^3.
+struct WendlandC2 {
+  static constexpr const char* name = "wendland-c2";
+  static constexpr double self_weight = 1.0;
+  template <class Real>
+  MAPPM_INLINE static KernelProfile<Real> at(const Real& q) {
+    const Real t = Real(1.0) - q;
+    const Real cube = t * t * t;
+    return {cube * t * (Real(1.0) + Real(4.0) * q), cube, Real(20.0) * cube};
+  }
+};
+
+/// Lucy (1977): W ~ (1-q)^3 (1+3q), -W'/q = 12 (1-q)^2.
+struct Lucy {
+  static constexpr const char* name = "lucy";
+  static constexpr double self_weight = 1.0;
+  template <class Real>
+  MAPPM_INLINE static KernelProfile<Real> at(const Real& q) {
+    const Real t = Real(1.0) - q;
+    const Real square = t * t;
+    return {square * t * (Real(1.0) + Real(3.0) * q), square, Real(12.0) * square};
+  }
+};
+
+/// The weight of the moving-particle semi-implicit method (Koshizuka and Oka 1996): w = 1/q - 1, which MaPPM's
+/// weighted difference uses as W' ~ -w/q, so G ~ w/q^2. A particle does not see itself.
+struct MpsWeight {
+  static constexpr const char* name = "mps";
+  static constexpr double self_weight = 0.0;
+  template <class Real>
+  MAPPM_INLINE static KernelProfile<Real> at(const Real& q) {
+    const Real inverse = Real(1.0) / larger(q, Real(1e-3));
+    const Real w = inverse - Real(1.0);
+    const Real inside = smaller(Real(1.0), w * Real(1e300));  // the slope jumps at the cutoff: 1 within, 0 at q = 1
+    return {w, w * inverse * inverse, inverse * inverse * inverse * inside};
+  }
+};
+
+/// Factors that turn the profiles into W, G and -W'/r, normalised on the initial lattice (see `normalise`).
+struct KernelScale {
+  double weight = 0.0;    // 1 / rcut^D
+  double gradient = 0.0;  // 1 / rcut^(D+2)
+  double rate = 0.0;      // 1 / rcut^(D+2)
+};
+
+/// Factors with which sums over a lattice of the given spacings (in units of rcut, mass 1 per node) are exact:
+/// sum W = number density, and (1/D) sum V r^2 G = 1. Source: design note "physics", pair law.
+template <int D, class Kernel>
+KernelScale normalise(const double (&spacing)[D]) {
+  double volume = 1.0;
+  int reach[3] = {0, 0, 0};
+  for (int axis = 0; axis < D; ++axis) {
+    volume *= spacing[axis];
+    reach[axis] = static_cast<int>(1.0 / spacing[axis]) + 1;
+  }
+  double weight_sum = Kernel::self_weight;
+  double gradient_sum = 0.0;
+  for (int k = -reach[2]; k <= reach[2]; ++k)
+    for (int j = -reach[1]; j <= reach[1]; ++j)
+      for (int i = -reach[0]; i <= reach[0]; ++i) {
+        if (i == 0 && j == 0 && k == 0) continue;
+        const int node[3] = {i, j, k};
+        double square = 0.0;
+        for (int axis = 0; axis < D; ++axis) {
+          const double offset = node[axis] * spacing[axis];
+          square += offset * offset;
+        }
+        if (square >= 1.0) continue;
+        const auto profile = Kernel::template at<double>(square_root(square));
+        weight_sum += profile.weight;
+        gradient_sum += square * profile.gradient;
+      }
+  const double number_density = 1.0 / volume;
+  KernelScale scale;
+  scale.weight = number_density / weight_sum;
+  scale.gradient = D * number_density / gradient_sum;
+  scale.rate = scale.weight;
+  return scale;
+}
+
+}  // namespace mappm

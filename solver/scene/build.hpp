@@ -1,0 +1,31 @@
+// Turns a scene into a Model and particles: made dimensionless once, here.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "particles/model.hpp"
+#include "particles/state.hpp"
+#include "scene/scene.hpp"
+
+namespace mappm {
+
+template <int D>
+struct BuiltModel {
+  Model<D> model;
+  std::uint64_t steps = 0;            // of the run, relaxation included
+  std::uint64_t fluid_particles = 0;  // PPs in the whole box
+  std::vector<std::string> warnings;  // one line each: scenes outside the mapped region, a step beyond its limit
+};
+
+/// Throws InputError for what the reader cannot see: overlapping solids, a solid larger than the box, a box smaller
+/// than 2 rcut, a step beyond `refused_step` times its limit.
+template <int D>
+BuiltModel<D> make_model(const Scene& scene);
+
+/// The particles at step 0 inside `region`. The union over any partition of the box is the same set, bit by bit:
+/// PP ids are lattice indices, solid ids count from 0 in the order of the scene.
+template <int D>
+State<D> build_state(const Scene& scene, const Model<D>& model, const Region<D>& region);
+
+}  // namespace mappm

@@ -1,0 +1,232 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "physics/step_limit.hpp"
+#include "scene/build.hpp"
+#include "scene/carving.hpp"
+#include "scene/lattice.hpp"
+#include "scene/model_checks.hpp"
+#include "scene/solids.hpp"
+
+namespace mappm {
+
+namespace {
+
+double norm(const Triple& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+/// Geometry and mass, which do not depend on the sound speed.
+template <int D>
+Model<D> start_model(const Scene& scene, const Lattice<D>& lattice) {
+  Model<D> model;
+  double node_volume = 1.0;
+  for (int axis = 0; axis < D; ++axis) {
+    const double side = scene.box[static_cast<std::size_t>(axis)];
+    model.box[axis] = side / scene.fluid.cutoff;
+    model.pair.length[axis] = model.box[axis] / box_quanta;
+    node_volume *= side / static_cast<double>(lattice.count[axis]);
+  }
+  model.units.length = scene.fluid.cutoff;
+  model.units.mass = scene.fluid.density * node_volume;
+  model.kernel = scene.fluid.kernel;
+  model.rest_density = 1.0 / lattice.cell_volume();
+  model.spacing = scene.fluid.spacing / scene.fluid.cutoff;
+  model.no_slip_nearest = 0.25 * model.spacing;
+  model.relax = scene.run.relax;
+  return model;
+}
+
+/// What the scene holds of matter, PP masses.
+struct Matter {
+  std::uint64_t fluid_particles = 0;
+  double free_mass = 0.0;
+  double lightest = HUGE_VAL;        // free solid
+  double lightest_radius = 0.0;      // for contact, rcut
+  std::size_t free_solids = 0, ball_solids = 0;
+};
+
+template <int D>
+Matter count_matter(const Scene& scene, const Model<D>& model, const Lattice<D>& lattice) {
+  const std::vector<PlacedSolid<D>> solids = place_solids(scene, model, lattice);
+  Matter matter;
+  if (scene.fluid.particles) matter.fluid_particles = kept_nodes(lattice, solid_volume(scene, model, solids));
+  for (const PlacedSolid<D>& solid : solids) {
+    const BodyScene& body = scene.bodies[solid.shape];
+    if (is_wall(body)) continue;
+    ++matter.ball_solids;
+    if (body.motion != Motion::free) continue;
+    ++matter.free_solids;
+    const Shape<D>& shape = model.shapes[solid.shape];
+    matter.free_mass += shape.mass;
+    if (shape.mass >= matter.lightest) continue;
+    matter.lightest = shape.mass;
+    matter.lightest_radius = shape.balls[0].contact_radius;
+  }
+  if (scene.fluid.particles && matter.fluid_particles == 0)
+    throw InputError(scene.file, "body", "", "the solids fill the box; make them smaller or enlarge box.size");
+  return matter;
+}
+
+template <int D>
+Terms find_terms(const Scene& scene, const Matter& matter) {
+  Terms terms;
+  terms.fluid = scene.fluid.particles;
+  terms.solids = !scene.bodies.empty();
+  terms.transport = terms.fluid && scene.fluid.transport;
+  terms.extrapolated = terms.fluid && terms.solids && scene.fluid.no_slip == NoSlip::extrapolated;
+  terms.body_force = norm(scene.force.fluid) > 0.0 || norm(scene.force.solid) > 0.0;
+  bool walls = false;
+  for (const BodyScene& body : scene.bodies) {
+    terms.motion = terms.motion || body.motion != Motion::fixed;
+    terms.rotation = terms.rotation || (body.motion == Motion::free && body.rotates);
+    walls = walls || is_wall(body);
+  }
+  terms.contact = scene.contact.model != ContactModel::none && matter.free_solids > 0 &&
+                  (matter.ball_solids > 1 || walls);
+  return terms;
+}
+
+/// Acceleration of the free solids in scene units; under "balance" the one that cancels the force on the fluid.
+Triple solid_acceleration(const Scene& scene, const Matter& matter) {
+  if (!scene.force.balance) return scene.force.solid;
+  if (matter.free_solids == 0 || matter.fluid_particles == 0)
+    throw InputError(scene.file, "force.solid", "\"balance\"",
+                     "needs a fluid and a free solid; write a list of accelerations");
+  Triple balanced{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    balanced[axis] =
+        -scene.force.fluid[axis] * static_cast<double>(matter.fluid_particles) / matter.free_mass;
+  return balanced;
+}
+
+/// By number, or by the rule of physics/step_limit: R is the smallest ball's radius, L the largest ball's diameter or,
+/// without balls, the longest side of the box, g the body force per mass of fluid, on the fluid or on the solids.
+double sound_speed(const Scene& scene, const Matter& matter, const Triple& on_solids) {
+  const SoundSpeed& declared = scene.fluid.sound_speed;
+  if (declared.value) return *declared.value;
+  double smallest = 0.0;
+  double length = 0.0;
+  for (const BodyScene& body : scene.bodies)
+    for (const BallScene& ball : body.balls) {
+      smallest = smallest > 0.0 ? std::min(smallest, ball.radius) : ball.radius;
+      length = std::max(length, 2.0 * ball.radius);
+    }
+  if (length == 0.0) length = *std::max_element(scene.box.begin(), scene.box.end());
+  double g = norm(scene.force.fluid);
+  if (matter.fluid_particles > 0)
+    g = std::max(g, norm(on_solids) * matter.free_mass / static_cast<double>(matter.fluid_particles));
+  const double nu = scene.fluid.viscosity / scene.fluid.density;
+  const double speed = sound_speed_rule(declared.factor, declared.velocity, g, length, nu, smallest);
+  if (speed > 0.0) return speed;
+  throw InputError(scene.file, "fluid.reference_velocity", "0",
+                   "gives no sound speed in a scene without forces; give the largest speed expected");
+}
+
+template <int D>
+ContactLaw make_contact(const Scene& scene, const UnitScale& units) {
+  const ContactScene& contact = scene.contact;
+  const double stiffness_unit = units.force() / units.length;
+  const double pressure_unit = units.force() / (units.length * units.length);
+  return make_contact_law(contact.model == ContactModel::hertz ? ContactKind::hertz : ContactKind::linear,
+                          contact.stiffness / stiffness_unit, contact.young / pressure_unit, contact.poisson,
+                          contact.restitution, contact.friction);
+}
+
+/// Limits in scene units. A contact lasts at least as long as that of two of the lightest solids; under Hertz' law at
+/// the largest speed that the scene declares, or at a tenth of the sound speed if it declares none.
+template <int D>
+StepLimits find_limits(const Scene& scene, const Model<D>& model, const Matter& matter, const Triple& on_solids) {
+  double duration = 0.0;
+  if (model.terms.contact) {
+    const double declared =
+        std::max(2.0 * largest_declared_speed(scene), scene.fluid.sound_speed.velocity) / model.units.velocity;
+    duration = contact_duration(model.contact, 0.5 * matter.lightest, 0.5 * matter.lightest_radius,
+                                declared > 0.0 ? declared : 0.1) *
+               model.units.time();
+  }
+  const double g = std::max(norm(scene.force.fluid), norm(on_solids));
+  StepLimits limits = step_limits(0.5 * scene.fluid.cutoff, model.units.velocity,
+                                  scene.fluid.viscosity / scene.fluid.density, g, duration);
+  if (!model.terms.fluid) limits.acoustic = HUGE_VAL;
+  return limits;
+}
+
+/// Constants of the pair law; they carry the step. shift: u dt with u = (dt/2) p_s (V_i^2 + V_j^2) G r, of which the
+/// law has G dt / iota already.
+template <int D>
+void fold_pair_law(const Scene& scene, const Lattice<D>& lattice, Model<D>& model) {
+  double spacing[D];
+  for (int axis = 0; axis < D; ++axis) spacing[axis] = lattice.spacing[axis];
+  with_pair_law(model, [&](auto kernel, auto) {
+    using Kernel = decltype(kernel);
+    const KernelScale scale = normalise<D, Kernel>(spacing);
+    model.pair.force = scale.gradient * model.dt / velocity_quantum;
+    model.pair.weight = scale.weight / density_quantum;
+    model.pair.rate = scale.rate * model.dt / density_quantum;
+    model.self_density = round_to_quantum(Kernel::self_weight * scale.weight, density_quantum);
+  });
+  const double shift_pressure = scene.fluid.shift_pressure * model.rest_density;
+  for (int axis = 0; axis < D; ++axis)
+    model.pair.shift[axis] = 0.5 * model.dt * shift_pressure * velocity_quantum / model.pair.length[axis];
+  const UnitScale& units = model.units;
+  model.pair.viscosity =
+      scene.fluid.viscosity / scene.fluid.density * model.rest_density / (units.length * units.velocity);
+  model.background = scene.fluid.background_pressure * model.rest_density;
+}
+
+template <int D>
+void fold_forces(const Scene& scene, const Matter& matter, Model<D>& model) {
+  const double unit = model.units.velocity / model.units.time();
+  for (int axis = 0; axis < D; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    model.fluid_kick[axis] = round_to_quantum(scene.force.fluid[a] / unit * model.dt, velocity_quantum);
+    model.solid_acceleration[axis] =
+        scene.force.balance ? -model.fluid_kick[axis] / model.dt * static_cast<double>(matter.fluid_particles) /
+                                  matter.free_mass
+                            : scene.force.solid[a] / unit;
+  }
+}
+
+template <int D>
+std::uint64_t run_steps(const Scene& scene, const Model<D>& model) {
+  if (scene.run.duration == 0.0) return scene.run.relax + scene.run.steps;
+  const double steps = scene.run.duration / (model.dt * model.units.time());
+  return scene.run.relax + static_cast<std::uint64_t>(std::ceil(steps * (1.0 - 1e-12)));
+}
+
+}  // namespace
+
+template <int D>
+BuiltModel<D> make_model(const Scene& scene) {
+  const Lattice<D> lattice = make_lattice<D>(scene);
+  check_box(scene, lattice);
+  Model<D> model = start_model(scene, lattice);
+  model.shapes = make_shapes(scene, model, lattice);
+  check_solids(scene, model);
+  const Matter matter = count_matter(scene, model, lattice);
+  model.terms = find_terms<D>(scene, matter);
+  const Triple on_solids = solid_acceleration(scene, matter);
+  model.units.velocity = sound_speed(scene, matter, on_solids);
+  check_velocities(scene, model.units.velocity);
+  model.faces = wall_faces(scene, model);
+  if (model.terms.contact) model.contact = make_contact<D>(scene, model.units);
+  for (const Shape<D>& shape : model.shapes) {
+    model.largest_reach = std::max(model.largest_reach, shape.reach);
+    if (model.terms.contact && !shape.balls.empty())
+      model.largest_contact_reach = std::max(model.largest_contact_reach, shape.reach);
+  }
+  const StepLimits limits = find_limits(scene, model, matter, on_solids);
+  const double step = scene.run.step > 0.0 ? scene.run.step : scene.run.step_factor * limits.smallest();
+  check_step(scene, step, limits);
+  model.dt = step / model.units.time();
+  fold_pair_law(scene, lattice, model);
+  fold_forces(scene, matter, model);
+  BuiltModel<D> built{model, run_steps(scene, model), matter.fluid_particles, {}};
+  built.warnings = scene_warnings(scene, model, lattice, limits);
+  return built;
+}
+
+template BuiltModel<2> make_model<2>(const Scene&);
+template BuiltModel<3> make_model<3>(const Scene&);
+
+}  // namespace mappm

@@ -1,0 +1,193 @@
+#include "scene/fields.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/error.hpp"
+
+namespace mappm {
+
+namespace {
+
+std::string joined(const std::vector<std::string>& names, const char* quote) {
+  std::string text;
+  for (const std::string& name : names) text += fmt::format("{}{}{}{}", text.empty() ? "" : ", ", quote, name, quote);
+  return text;
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+Fields::Fields(const Source& source, std::string path, const toml::table& table)
+    : source_(&source), path_(std::move(path)), table_(&table) {}
+
+std::string Fields::path(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+
+const toml::node* Fields::find(const std::string& key) const {
+  if (!contains(asked_, key)) asked_.push_back(key);
+  return table_->get(key);
+}
+
+bool Fields::has(const std::string& key) const { return find(key) != nullptr; }
+
+void Fields::fail(const std::string& key, const std::string& fix) const {
+  const toml::node* node = table_->get(key);
+  const auto line = node ? node->source().begin.line : table_->source().begin.line;
+  throw InputError(line > 0 ? fmt::format("{}:{}", source_->file, line) : source_->file, path(key),
+                   node && !node->is_table() ? node_text(*node) : "", fix);
+}
+
+void Fields::fail_unknown(const std::string& key) const {
+  const std::string nearest = nearest_name(key, asked_);
+  fail(key, fmt::format("unknown key; {}",
+                        nearest.empty() ? "known here: " + joined(asked_, "") : "did you mean \"" + nearest + "\"?"));
+}
+
+void Fields::fail_choice(const std::string& key, const std::vector<std::string>& known) const {
+  fail(key, "unknown choice; write one of " + joined(known, "\""));
+}
+
+const toml::node& Fields::require(const std::string& key) const {
+  if (const toml::node* node = find(key)) return *node;
+  for (const auto& [other, node] : *table_)  // a misspelt key explains a missing one
+    if (const std::string name{other.str()}; !contains(asked_, name) && nearest_name(name, {key}) == key)
+      fail_unknown(name);
+  fail(key, "missing; add it");
+}
+
+void Fields::finish() const {
+  for (const auto& [key, node] : *table_)
+    if (const std::string name{key.str()}; !contains(asked_, name)) fail_unknown(name);
+}
+
+double Fields::number_of(const toml::node& node, const std::string& key, Quantity quantity, Sign sign) const {
+  double value = 0.0;
+  if (const auto* text = node.as_string()) {
+    if (source_->units != Units::si)
+      fail(key, "text where a number is expected; write a number (units are for scenes with units = \"SI\")");
+    try {
+      value = value_in_si(text->get(), quantity);
+    } catch (const std::invalid_argument& error) {
+      fail(key, error.what());
+    }
+  } else if (const auto* integer = node.as_integer()) {
+    value = static_cast<double>(integer->get());
+  } else if (const auto* real = node.as_floating_point()) {
+    value = real->get();
+  } else {
+    fail(key, "wrong type; write a number");
+  }
+  if (!std::isfinite(value)) fail(key, "is not finite; write a finite number");
+  if (sign == Sign::positive && value <= 0.0) fail(key, "must be positive; write a number above 0");
+  if (sign == Sign::not_negative && value < 0.0) fail(key, "must not be negative; write 0 or more");
+  return value;
+}
+
+double Fields::number(const std::string& key, Quantity quantity, Sign sign) const {
+  return number_of(require(key), key, quantity, sign);
+}
+
+double Fields::number(const std::string& key, Quantity quantity, Sign sign, double fallback) const {
+  return has(key) ? number(key, quantity, sign) : fallback;
+}
+
+std::uint64_t Fields::count(const std::string& key, std::optional<std::uint64_t> fallback) const {
+  if (fallback && !has(key)) return *fallback;
+  const auto* integer = require(key).as_integer();
+  if (!integer) fail(key, "wrong type; write a whole number without a decimal point");
+  if (integer->get() < 0) fail(key, "must not be negative; write 0 or more");
+  return static_cast<std::uint64_t>(integer->get());
+}
+
+bool Fields::flag(const std::string& key, bool fallback) const {
+  if (!has(key)) return fallback;
+  const auto* value = require(key).as_boolean();
+  if (!value) fail(key, "wrong type; write true or false");
+  return value->get();
+}
+
+bool Fields::is_word(const std::string& key) const {
+  const toml::node* node = find(key);
+  return node && node->is_string();
+}
+
+std::string Fields::word(const std::string& key) const {
+  const auto* value = require(key).as_string();
+  if (!value) fail(key, "wrong type; write a text in quotes");
+  return value->get();
+}
+
+Triple Fields::triple_of(const toml::node& node, const std::string& key, Quantity quantity) const {
+  const toml::array* array = node.as_array();
+  const auto dimension = static_cast<std::size_t>(source_->dimension);
+  if (!array || array->size() != dimension)
+    fail(key, fmt::format("wrong type; write a list of {} numbers, one per axis", dimension));
+  Triple triple{};
+  for (std::size_t i = 0; i < dimension; ++i) triple[i] = number_of(*array->get(i), key, quantity, Sign::any);
+  return triple;
+}
+
+Triple Fields::vector(const std::string& key, Quantity quantity) const {
+  return triple_of(require(key), key, quantity);
+}
+
+Triple Fields::vector(const std::string& key, Quantity quantity, const Triple& fallback) const {
+  return has(key) ? vector(key, quantity) : fallback;
+}
+
+std::vector<Triple> Fields::vectors(const std::string& key, Quantity quantity) const {
+  const toml::array* array = require(key).as_array();
+  if (!array || array->empty()) fail(key, "wrong type; write a list of points [[x, y], ...]");
+  std::vector<Triple> triples;
+  for (const toml::node& node : *array) triples.push_back(triple_of(node, key, quantity));
+  return triples;
+}
+
+std::vector<double> Fields::sides(const std::string& key) const {
+  const toml::array* array = require(key).as_array();
+  if (!array || (array->size() != 2 && array->size() != 3))
+    fail(key, "wrong type; write two or three sides, e.g. [1.0, 2.0]");
+  std::vector<double> values;
+  for (const toml::node& node : *array) values.push_back(number_of(node, key, Quantity::length, Sign::positive));
+  return values;
+}
+
+int Fields::axis(const std::string& key, std::optional<int> fallback) const {
+  const Names<int> names{{"x", 0}, {"y", 1}, {"z", 2}};
+  const int axis = fallback ? choice(key, names, *fallback) : choice(key, names);
+  if (axis >= source_->dimension) fail(key, "the box has no such axis; write \"x\" or \"y\"");
+  return axis;
+}
+
+std::optional<Fields> Fields::table(const std::string& key) const {
+  const toml::node* node = find(key);
+  if (!node) return {};
+  if (!node->is_table()) fail(key, fmt::format("wrong type; write a table [{}]", path(key)));
+  return Fields(*source_, path(key), *node->as_table());
+}
+
+Fields Fields::required_table(const std::string& key) const {
+  require(key);
+  return *table(key);
+}
+
+std::vector<Fields> Fields::tables(const std::string& key) const {
+  const toml::node* node = find(key);
+  if (!node) return {};
+  const toml::array* array = node->as_array();
+  if (!array) fail(key, fmt::format("wrong type; write a list of tables [[{}]]", path(key)));
+  std::vector<Fields> result;
+  for (const toml::node& entry : *array) {
+    if (!entry.is_table()) fail(key, fmt::format("wrong type; write a list of tables [[{}]]", path(key)));
+    result.emplace_back(*source_, fmt::format("{}.{}", path(key), result.size()), *entry.as_table());
+  }
+  return result;
+}
+
+}  // namespace mappm

@@ -1,0 +1,165 @@
+#include "scene/model_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "scene/obstacles.hpp"
+#include "scene/solids.hpp"
+
+namespace mappm {
+
+namespace {
+
+/// More PPs than this within rcut^D, and a density leaves the range of its fixed-point numbers when it doubles.
+constexpr double most_dense = 0.5 * exact_quanta * density_quantum;
+
+/// Resolutions and Mach numbers at which drags were measured against known values.
+constexpr double least_support = 2.5, most_support = 4.5, least_radius = 4.0, largest_mach = 0.101;
+
+double norm(const Triple& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+std::string step_text(const StepLimits& limits) {
+  const std::pair<const char*, double> named[] = {{"sound", limits.acoustic},
+                                                  {"viscosity", limits.viscous},
+                                                  {"force", limits.body_force},
+                                                  {"contact", limits.contact}};
+  for (const auto& [name, limit] : named)
+    if (limit == limits.smallest()) return fmt::format("{:.6g} (of {})", limit, name);
+  return "infinite";
+}
+
+std::string step_key(const Scene& scene) { return scene.run.step > 0.0 ? "run.step" : "run.step_factor"; }
+
+double declared_step(const Scene& scene) { return scene.run.step > 0.0 ? scene.run.step : scene.run.step_factor; }
+
+bool is_whole(double x) { return std::fabs(x - std::floor(x + 0.5)) < 1e-6; }
+
+}  // namespace
+
+double largest_declared_speed(const Scene& scene) {
+  double largest = norm(scene.fluid.velocity) + (scene.fluid.wave ? std::fabs(scene.fluid.wave->amplitude) : 0.0);
+  for (const BodyScene& body : scene.bodies)
+    for (const Triple& velocity : body.velocities) largest = std::max(largest, norm(velocity));
+  return largest;
+}
+
+template <int D>
+void check_box(const Scene& scene, const Lattice<D>& lattice) {
+  double nodes = 1.0;
+  for (int axis = 0; axis < D; ++axis) {
+    const double side = scene.box[static_cast<std::size_t>(axis)];
+    nodes *= static_cast<double>(lattice.count[axis]);
+    if (side < 2.0 * (1.0 + 1e-9) * scene.fluid.cutoff)
+      throw InputError(scene.file, "box.size", fmt::format("{}", side),
+                       fmt::format("must be longer than 2 rcut = {}; enlarge the box or lower fluid.rcut or "
+                                   "fluid.spacing",
+                                   2.0 * scene.fluid.cutoff));
+  }
+  if (scene.fluid.cutoff <= scene.fluid.spacing)
+    throw InputError(scene.file, "fluid.rcut", fmt::format("{}", scene.fluid.cutoff),
+                     fmt::format("must exceed fluid.spacing = {}; 3 spacings are usual", scene.fluid.spacing));
+  const double density = 1.0 / lattice.cell_volume();
+  if (density > most_dense)
+    throw InputError(scene.file, "fluid.rcut", fmt::format("{}", scene.fluid.cutoff),
+                     fmt::format("makes {:.4g} PPs in a cube of rcut, more than {}; lower it to about 3 spacings",
+                                 density, most_dense));
+  if (nodes > 0x1p50)
+    throw InputError(scene.file, "fluid.spacing", fmt::format("{}", scene.fluid.spacing),
+                     "makes more PPs than can be numbered; enlarge it");
+}
+
+template <int D>
+void check_solids(const Scene& scene, const Model<D>& model) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const BodyScene& body = scene.bodies[i];
+    if (is_wall(body)) {
+      if (scene.fluid.particles && body.thickness < scene.fluid.cutoff)
+        throw InputError(scene.file, body.key + ".thickness", fmt::format("{}", body.thickness),
+                         fmt::format("the fluid sees through a wall thinner than rcut = {}; make it thicker",
+                                     scene.fluid.cutoff));
+      continue;
+    }
+    const double width = 2.0 * model.shapes[i].reach * scene.fluid.cutoff;
+    for (int axis = 0; axis < D; ++axis) {
+      const double side = scene.box[static_cast<std::size_t>(axis)];
+      if (width > side)
+        throw InputError(scene.file, body.key, "",
+                         fmt::format("the solid is {:.6g} wide, more than the box side {}; make it smaller or enlarge "
+                                     "box.size",
+                                     width, side));
+    }
+  }
+  check_overlaps(scene);
+}
+
+void check_velocities(const Scene& scene, double sound_speed) {
+  const double speed = largest_declared_speed(scene);
+  if (speed >= sound_speed)
+    throw InputError(scene.file, "fluid.sound_speed", fmt::format("{:.6g}", sound_speed),
+                     fmt::format("is not above the largest declared speed {:.6g}; ten times that is usual", speed));
+}
+
+void check_step(const Scene& scene, double step, const StepLimits& limits) {
+  if (!std::isfinite(step))
+    throw InputError(scene.file, "run.step", "", "missing: nothing in this scene limits the step; give it");
+  if (step > refused_step * limits.smallest())
+    throw InputError(scene.file, step_key(scene), fmt::format("{}", declared_step(scene)),
+                     fmt::format("the step {:.6g} is more than {} times its limit {}; lower it", step, refused_step,
+                                 step_text(limits)));
+}
+
+template <int D>
+std::vector<std::string> scene_warnings(const Scene& scene, const Model<D>& model, const Lattice<D>& lattice,
+                                        const StepLimits& limits) {
+  std::vector<std::string> lines;
+  const double step = model.dt * model.units.time();
+  if (step > (1.0 + 1e-9) * limits.smallest())
+    lines.push_back(fmt::format("{} = {}: the step {:.6g} is beyond its limit {}: results may be wrong without any sign",
+                                step_key(scene), declared_step(scene), step, step_text(limits)));
+  const bool meeting = std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const BodyScene& body) {
+                         return body.motion == Motion::free;
+                       }) > 0 &&
+                       (scene.bodies.size() > 1 || scene.bodies[0].positions.size() > 1);
+  if (meeting && !model.terms.contact)
+    lines.push_back("[contact] is missing: solids that meet pass through each other");
+  if (!model.terms.fluid) return lines;
+
+  const double support = 1.0 / model.spacing;
+  if (support < least_support || support > most_support)
+    lines.push_back(fmt::format("fluid.rcut: {:.3g} spacings; errors are known for {} to {}", support, least_support,
+                                most_support));
+  const double speed = std::max(largest_declared_speed(scene), scene.fluid.sound_speed.velocity);
+  if (speed > largest_mach * model.units.velocity)
+    lines.push_back(fmt::format("fluid.sound_speed: {:.6g} is less than ten times the speed {:.6g}: the fluid is "
+                                "compressible",
+                                model.units.velocity, speed));
+  if (scene.fluid.background_pressure > 0.0)
+    lines.push_back(fmt::format("fluid.background_pressure = {}: stiffens the particle lattice; drags are too large",
+                                scene.fluid.background_pressure));
+  for (const BodyScene& body : scene.bodies) {
+    for (const BallScene& ball : body.balls)
+      if (ball.radius < least_radius * scene.fluid.spacing)
+        lines.push_back(fmt::format("{}.radius: {:.3g} spacings; below {} the drag is wrong by 6 % and more", body.key,
+                                    ball.radius / scene.fluid.spacing, least_radius));
+    const double cell = lattice.spacing[body.axis] * scene.fluid.cutoff;
+    if (is_wall(body) && !(is_whole(body.position / cell) && is_whole(body.thickness / cell)))
+      lines.push_back(fmt::format("{}: position and thickness are not whole multiples of the lattice spacing {:.6g}: "
+                                  "the fluid starts with an uneven row",
+                                  body.key, cell));
+  }
+  return lines;
+}
+
+#define MAPPM_INSTANTIATE(D)                                        \
+  template void check_box(const Scene&, const Lattice<D>&);         \
+  template void check_solids(const Scene&, const Model<D>&);        \
+  template std::vector<std::string> scene_warnings(const Scene&, const Model<D>&, const Lattice<D>&, const StepLimits&)
+
+MAPPM_INSTANTIATE(2);
+MAPPM_INSTANTIATE(3);
+#undef MAPPM_INSTANTIATE
+
+}  // namespace mappm

@@ -1,0 +1,184 @@
+#include "scene/reader.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "base/error.hpp"
+#include "scene/bodies.hpp"
+#include "scene/document.hpp"
+#include "scene/fields.hpp"
+
+namespace mappm {
+
+namespace {
+
+void read_box(const Fields& table, Source& source, Scene& scene) {
+  const std::vector<double> sides = table.sides("size");
+  scene.dimension = static_cast<int>(sides.size());
+  source.dimension = scene.dimension;
+  for (std::size_t axis = 0; axis < sides.size(); ++axis) scene.box[axis] = sides[axis];
+  table.finish();
+}
+
+SoundSpeed read_sound_speed(const Fields& table) {
+  SoundSpeed speed;
+  if (table.has("sound_speed")) {
+    speed.value = table.number("sound_speed", Quantity::velocity, Sign::positive);
+    if (table.has("sound_speed_factor"))
+      table.fail("sound_speed_factor", "sound_speed is given too; keep one of them");
+  } else {
+    speed.factor = table.number("sound_speed_factor", Quantity::plain, Sign::positive, speed.factor);
+    if (!table.has("reference_velocity"))
+      table.fail("sound_speed", "missing; give a number, or the rule by reference_velocity and sound_speed_factor");
+  }
+  speed.velocity = table.number("reference_velocity", Quantity::velocity, Sign::not_negative, 0.0);
+  return speed;
+}
+
+std::optional<FluidScene::Wave> read_wave(const Fields& fluid) {
+  const std::optional<Fields> table = fluid.table("wave");
+  if (!table) return {};
+  FluidScene::Wave wave;
+  wave.amplitude = table->number("amplitude", Quantity::velocity, Sign::any);
+  wave.direction = table->axis("direction");
+  wave.gradient = table->axis("gradient");
+  const std::uint64_t mode = table->count("mode", 1);
+  if (mode == 0 || mode > 1'000'000) table->fail("mode", "must be 1 to 1000000: waves per box side");
+  wave.mode = static_cast<int>(mode);
+  table->finish();
+  return wave;
+}
+
+void read_fluid_law(const Fields& table, FluidScene& fluid) {
+  fluid.method =
+      table.choice<Method>("method", {{"classic", Method::classic}, {"transport", Method::transport}}, fluid.method);
+  const bool classic = fluid.method == Method::classic;
+  fluid.kernel = table.choice<KernelKind>(
+      "kernel", {{"wendland-c2", KernelKind::wendland_c2}, {"lucy", KernelKind::lucy}, {"mps", KernelKind::mps}},
+      fluid.kernel);
+  fluid.no_slip =
+      table.choice<NoSlip>("no_slip", {{"plain", NoSlip::plain}, {"extrapolated", NoSlip::extrapolated}},
+                           classic ? NoSlip::plain : NoSlip::extrapolated);
+  fluid.transport = table.flag("transport", !classic);
+  fluid.background_pressure = table.number("background_pressure", Quantity::plain, Sign::not_negative, 0.0);
+  fluid.shift_pressure = table.number("shift_pressure", Quantity::plain, Sign::positive, 1.0);
+  if (!fluid.transport && table.has("shift_pressure"))
+    table.fail("shift_pressure", "acts with transport = true only; remove it");
+}
+
+void read_fluid(const Fields& table, FluidScene& fluid) {
+  fluid.particles = table.flag("particles", true);
+  fluid.density = table.number("density", Quantity::density, Sign::positive);
+  fluid.spacing = table.number("spacing", Quantity::length, Sign::positive);
+  fluid.cutoff = table.number("rcut", Quantity::length, Sign::positive, 3.0 * fluid.spacing);
+  fluid.sound_speed = read_sound_speed(table);
+  if (fluid.particles) {
+    fluid.viscosity = table.number("viscosity", Quantity::viscosity, Sign::not_negative);
+    read_fluid_law(table, fluid);
+    fluid.velocity = table.vector("velocity", Quantity::velocity, {});
+    fluid.wave = read_wave(table);
+  }
+  table.finish();
+}
+
+ContactScene read_contact(const Fields& table) {
+  ContactScene contact;
+  contact.model = table.choice<ContactModel>(
+      "model", {{"none", ContactModel::none}, {"linear", ContactModel::linear}, {"hertz", ContactModel::hertz}});
+  if (contact.model == ContactModel::linear)
+    contact.stiffness = table.number("stiffness", Quantity::stiffness, Sign::positive);
+  if (contact.model == ContactModel::hertz) {
+    contact.young = table.number("young", Quantity::pressure, Sign::positive);
+    contact.poisson = table.number("poisson", Quantity::plain, Sign::not_negative);
+    if (contact.poisson > 0.5) table.fail("poisson", "must lie in [0, 0.5]");
+  }
+  if (contact.model != ContactModel::none) {
+    contact.restitution = table.number("restitution", Quantity::plain, Sign::positive, 1.0);
+    if (contact.restitution > 1.0) table.fail("restitution", "must lie in (0, 1]");
+    contact.friction = table.number("friction", Quantity::plain, Sign::not_negative, 0.0);
+  }
+  table.finish();
+  return contact;
+}
+
+ForceScene read_force(const Fields& table, bool particles) {
+  ForceScene force;
+  if (particles) force.fluid = table.vector("fluid", Quantity::acceleration, {});
+  if (table.is_word("solid")) {
+    if (table.word("solid") != "balance")
+      table.fail("solid", "unknown choice; write \"balance\" or a list of accelerations, one per axis");
+    force.balance = true;
+  } else {
+    force.solid = table.vector("solid", Quantity::acceleration, {});
+  }
+  table.finish();
+  return force;
+}
+
+RunScene read_run(const Fields& table) {
+  RunScene run;
+  if (table.has("step") && table.has("step_factor")) table.fail("step_factor", "step is given too; keep one of them");
+  if (table.has("steps") && table.has("duration")) table.fail("duration", "steps is given too; keep one of them");
+  run.step = table.has("step") ? table.number("step", Quantity::time, Sign::positive) : 0.0;
+  run.step_factor = table.number("step_factor", Quantity::plain, Sign::positive, 1.0);
+  if (table.has("duration"))
+    run.duration = table.number("duration", Quantity::time, Sign::positive);
+  else
+    run.steps = table.count("steps");
+  if (run.duration == 0.0 && run.steps == 0) table.fail("steps", "must be at least 1; write the number of steps");
+  run.relax = table.count("relax", 0);
+  table.finish();
+  return run;
+}
+
+OutputScene read_output(const Fields& table) {
+  OutputScene output;
+  output.sample = table.count("sample", output.sample);
+  if (output.sample == 0) table.fail("sample", "must be at least 1; write the steps between samples");
+  output.snapshot = table.count("snapshot", 0);
+  output.checkpoint = table.count("checkpoint", 0);
+  output.solids = table.flag("solids", false);
+  table.finish();
+  return output;
+}
+
+Scene read_tree(const toml::table& tree, const std::string& file) {
+  Scene scene;
+  scene.file = file;
+  scene.text = canonical_text(tree);
+  Source source{file, Units::dimensionless, 2};
+  const Fields root(source, "", tree);
+  scene.name = root.word("name");
+  scene.units = root.choice<Units>("units", {{"SI", Units::si}, {"dimensionless", Units::dimensionless}});
+  source.units = scene.units;
+  read_box(root.required_table("box"), source, scene);
+  read_fluid(root.required_table("fluid"), scene.fluid);
+  read_bodies(root.tables("body"), scene);
+  if (const auto contact = root.table("contact")) scene.contact = read_contact(*contact);
+  if (const auto force = root.table("force")) scene.force = read_force(*force, scene.fluid.particles);
+  scene.run = read_run(root.required_table("run"));
+  if (const auto output = root.table("output")) scene.output = read_output(*output);
+  root.has("case");  // for the verification suite, which checks it itself
+  root.finish();
+  return scene;
+}
+
+}  // namespace
+
+Scene read_scene_text(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
+  return read_tree(parse_document(text, name, overrides), name);
+}
+
+Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
+  std::ifstream stream(path);
+  std::ostringstream text;
+  if (!stream || std::filesystem::is_directory(path))
+    throw InputError(path, "scene", "", "cannot be read; check the path and its permissions");
+  text << stream.rdbuf();
+  return read_scene_text(text.str(), path, overrides);
+}
+
+}  // namespace mappm

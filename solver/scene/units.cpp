@@ -1,0 +1,85 @@
+#include "scene/units.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <stdexcept>
+
+namespace mappm {
+
+namespace {
+
+/// A unit as a ratio of two exact numbers, so that "5 um" is the double nearest to 5e-6.
+struct Unit {
+  Quantity quantity;
+  std::string_view name;
+  double times, over;
+};
+
+constexpr Unit units[] = {
+    {Quantity::length, "m", 1.0, 1.0},
+    {Quantity::length, "cm", 1.0, 1e2},
+    {Quantity::length, "mm", 1.0, 1e3},
+    {Quantity::length, "um", 1.0, 1e6},
+    {Quantity::length, "nm", 1.0, 1e9},
+    {Quantity::time, "s", 1.0, 1.0},
+    {Quantity::time, "ms", 1.0, 1e3},
+    {Quantity::time, "us", 1.0, 1e6},
+    {Quantity::time, "ns", 1.0, 1e9},
+    {Quantity::time, "ps", 1.0, 1e12},
+    {Quantity::time, "min", 60.0, 1.0},
+    {Quantity::velocity, "m/s", 1.0, 1.0},
+    {Quantity::velocity, "cm/s", 1.0, 1e2},
+    {Quantity::velocity, "mm/s", 1.0, 1e3},
+    {Quantity::velocity, "um/s", 1.0, 1e6},
+    {Quantity::angular_velocity, "rad/s", 1.0, 1.0},
+    {Quantity::angular_velocity, "1/s", 1.0, 1.0},
+    {Quantity::acceleration, "m/s2", 1.0, 1.0},
+    {Quantity::acceleration, "cm/s2", 1.0, 1e2},
+    {Quantity::acceleration, "mm/s2", 1.0, 1e3},
+    {Quantity::density, "kg/m3", 1.0, 1.0},
+    {Quantity::density, "g/cm3", 1e3, 1.0},
+    {Quantity::density, "g/l", 1.0, 1.0},
+    {Quantity::viscosity, "Pa s", 1.0, 1.0},
+    {Quantity::viscosity, "mPa s", 1.0, 1e3},
+    {Quantity::viscosity, "kg/(m s)", 1.0, 1.0},
+    {Quantity::viscosity, "cP", 1.0, 1e3},
+    {Quantity::stiffness, "N/m", 1.0, 1.0},
+    {Quantity::stiffness, "kN/m", 1e3, 1.0},
+    {Quantity::pressure, "Pa", 1.0, 1.0},
+    {Quantity::pressure, "kPa", 1e3, 1.0},
+    {Quantity::pressure, "MPa", 1e6, 1.0},
+    {Quantity::pressure, "GPa", 1e9, 1.0},
+};
+
+std::string known_units(Quantity quantity) {
+  std::string names;
+  for (const Unit& unit : units)
+    if (unit.quantity == quantity) names += fmt::format("{}{}", names.empty() ? "" : ", ", unit.name);
+  return names;
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+}  // namespace
+
+double value_in_si(std::string_view text, Quantity quantity) {
+  const std::string_view whole = trimmed(text);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
+  if (error != std::errc{}) throw std::invalid_argument("is not a number; write a number");
+  const std::string_view name = trimmed(whole.substr(static_cast<std::size_t>(end - whole.data())));
+  if (quantity == Quantity::plain) throw std::invalid_argument("has no unit; write the number without quotes");
+  for (const Unit& unit : units)
+    if (unit.quantity == quantity && unit.name == name) return value * unit.times / unit.over;
+  throw std::invalid_argument(
+      fmt::format("{}; units of this key: {}",
+                  name.empty() ? "lacks a unit" : fmt::format("\"{}\" is not a unit of this key", name),
+                  known_units(quantity)));
+}
+
+}  // namespace mappm

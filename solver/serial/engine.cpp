@@ -1,0 +1,207 @@
+#include "serial/engine.hpp"
+
+#include <chrono>
+#include <utility>
+
+namespace mappm {
+
+namespace {
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+template <int D>
+Vec<D, double> position(const FluidParticles<D>& fluid, std::size_t i) {
+  Vec<D, double> x;
+  for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];
+  return x;
+}
+
+template <int D>
+Vec<D, double> velocity(const FluidParticles<D>& fluid, std::size_t i) {
+  Vec<D, double> v;
+  for (int axis = 0; axis < D; ++axis) v[axis] = fluid.v(axis)[i];
+  return v;
+}
+
+template <int D>
+Vec<D, double> nearest_vector(const Vec<D, double>& a, const Vec<D, double>& b) {
+  Vec<D, double> d;
+  for (int axis = 0; axis < D; ++axis) d[axis] = nearest_difference(a[axis], b[axis]);
+  return d;
+}
+
+template <int D>
+Vec<D, double> wrapped(Vec<D, double> x) {
+  for (int axis = 0; axis < D; ++axis) x[axis] = wrap_position(x[axis]);
+  return x;
+}
+
+/// A region that holds every FP wherever its solid is: a solid reaches at most half a box beyond its centre.
+template <int D>
+Region<D> everywhere() {
+  Region<D> region;
+  for (int axis = 0; axis < D; ++axis) {
+    region.low[axis] = -box_quanta;
+    region.high[axis] = 2.0 * box_quanta;
+  }
+  return region;
+}
+
+}  // namespace
+
+template <int D>
+SerialEngine<D>::SerialEngine(const Model<D>& model, State<D>&& state, Neighbours neighbours)
+    : model_(model),
+      state_(std::move(state)),
+      fluid_cells_(model.box, neighbours),
+      frozen_cells_(model.box, neighbours) {}
+
+/// One step of the method:
+///   1. place the FPs of every solid and find neighbours,
+///   2. sum the pair law over the neighbours of every PP; an FP receives the opposite impulse,
+///   3. kick and drift the PPs; sum the impulses of the FPs onto their solids, add contacts, kick and drift these.
+template <int D>
+void SerialEngine<D>::step() {
+  const double start = seconds_now();
+  place_solids();
+  find_neighbours();
+  sums_.assign(state_.fluid.size(), {});
+  frozen_sums_.assign(frozen_.size(), {});
+  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
+    for (std::size_t i = 0; i < state_.fluid.size(); ++i) {
+      sum_over_fluid<Kernel, transport>(i);
+      sum_over_frozen<Kernel, transport>(i);
+    }
+    sum_frozen_densities<Kernel>();
+  });
+  const double summed = seconds_now();
+  move_fluid();
+  move_solids();
+  ++state_.step;
+  pair_seconds_ += summed - start;
+  integrate_seconds_ += seconds_now() - summed;
+}
+
+template <int D>
+void SerialEngine<D>::place_solids() {
+  bodies_.clear();
+  frozen_.clear();
+  for (const Solid<D>& solid : state_.solids) {
+    bodies_.push_back(solid_in_step(model_, solid));
+    if (model_.terms.fluid)
+      place_frozen(model_, bodies_.back(), static_cast<std::uint32_t>(bodies_.size() - 1), everywhere<D>(), frozen_);
+  }
+}
+
+template <int D>
+void SerialEngine<D>::find_neighbours() {
+  const FluidParticles<D>& fluid = state_.fluid;
+  fluid_cells_.clear();
+  volume_.resize(fluid.size());
+  for (std::size_t i = 0; i < fluid.size(); ++i) {
+    fluid_cells_.add(position(fluid, i));
+    volume_[i] = volume_terms(fluid.density()[i], model_.rest_density, 1.0, model_.background);
+  }
+  frozen_cells_.clear();
+  for (FrozenInStep<D>& fp : frozen_) {
+    fp.place.x = wrapped(fp.place.x);
+    frozen_cells_.add(fp.place.x);
+  }
+}
+
+template <int D>
+template <class Kernel, bool transport>
+void SerialEngine<D>::sum_over_fluid(std::size_t i) {
+  const Vec<D, double> x = position(state_.fluid, i), v = velocity(state_.fluid, i);
+  NeighbourSums<D>& sums = sums_[i];
+  fluid_cells_.for_each_near(x, [&](int neighbour) {
+    const auto j = static_cast<std::size_t>(neighbour);
+    if (j == i) return;
+    const FluidPair<D, double> pair{nearest_vector(x, position(state_.fluid, j)), v - velocity(state_.fluid, j),
+                                    volume_[i].v2 + volume_[j].v2, volume_[i].pv2 + volume_[j].pv2};
+    const Vec<D, double> r = separation(model_.pair, pair.d);
+    const auto given = fluid_pair<Kernel, transport>(model_.pair, pair, r, cut_distance(r), 1.0);
+    sums.impulse += given.impulse;
+    sums.shift += given.shift;
+    sums.density += given.density;
+  });
+}
+
+template <int D>
+template <class Kernel, bool transport>
+void SerialEngine<D>::sum_over_frozen(std::size_t i) {
+  const Vec<D, double> x = position(state_.fluid, i), v = velocity(state_.fluid, i);
+  NeighbourSums<D>& sums = sums_[i];
+  frozen_cells_.for_each_near(x, [&](int neighbour) {
+    const auto k = static_cast<std::size_t>(neighbour);
+    const FrozenInStep<D>& fp = frozen_[k];
+    const FluidPair<D, double> pair{nearest_vector(x, fp.place.x), v - fp.place.v, volume_[i].v2 + fp.volume.v2,
+                                    volume_[i].pv2 + fp.volume.pv2};
+    const Vec<D, double> r = separation(model_.pair, pair.d);
+    const double beta =
+        model_.terms.extrapolated ? no_slip_factor(r, fp.place.normal, fp.depth, model_.no_slip_nearest) : 1.0;
+    const auto given = fluid_pair<Kernel, transport>(model_.pair, pair, r, cut_distance(r), beta);
+    sums.impulse += given.impulse;
+    sums.shift += given.shift;
+    sums.density += given.density;
+    frozen_sums_[k].impulse -= given.impulse;
+    frozen_sums_[k].density += given.density;
+  });
+}
+
+/// An FP also counts the matter of other solids near it; its own solid's share is part of its shape.
+template <int D>
+template <class Kernel>
+void SerialEngine<D>::sum_frozen_densities() {
+  for (std::size_t k = 0; k < frozen_.size(); ++k) {
+    const FrozenInStep<D>& fp = frozen_[k];
+    frozen_cells_.for_each_near(fp.place.x, [&](int neighbour) {
+      const FrozenInStep<D>& other = frozen_[static_cast<std::size_t>(neighbour)];
+      if (state_.solids[fp.solid].group == state_.solids[other.solid].group) return;
+      const Vec<D, double> r = separation(model_.pair, nearest_vector(fp.place.x, other.place.x));
+      frozen_sums_[k].density += pair_density<Kernel>(model_.pair, r, fp.place.v - other.place.v, cut_distance(r));
+    });
+  }
+}
+
+template <int D>
+void SerialEngine<D>::move_fluid() {
+  FluidParticles<D>& fluid = state_.fluid;
+  const ParticleStep<D> constants = particle_step(model_, state_.step);
+  for (std::size_t i = 0; i < fluid.size(); ++i) {
+    Vec<D, double> x = position(fluid, i), v = velocity(fluid, i);
+    const RangeFault fault = advance(x, v, fluid.density()[i], sums_[i], constants);
+    if (fault != RangeFault::none && range_error_.empty())
+      range_error_ = range_message(fault, state_.step, fluid.id[i], v, sums_[i]);
+    for (int axis = 0; axis < D; ++axis) {
+      fluid.x(axis)[i] = wrap_position(x[axis]);
+      fluid.v(axis)[i] = v[axis];
+      state_.outside_impulse[axis] += static_cast<std::int64_t>(constants.kick[axis] / velocity_quantum);
+    }
+  }
+}
+
+template <int D>
+void SerialEngine<D>::move_solids() {
+  std::vector<SolidLoad<D>> loads(state_.solids.size());
+  for (std::size_t k = 0; k < frozen_.size(); ++k) {
+    const FrozenInStep<D>& fp = frozen_[k];
+    add_frozen_load(fp, frozen_sums_[k].impulse, loads[fp.solid].fluid);
+    state_.solids[fp.solid].density[fp.index] = frozen_density(fp, frozen_sums_[k].density);
+  }
+  if (model_.terms.contact)
+    for (std::size_t a = 0; a < bodies_.size(); ++a) {
+      for (std::size_t b = 0; b < bodies_.size(); ++b)
+        if (a != b) add_contacts(model_, bodies_[a], bodies_[b], loads[a]);
+      add_face_contacts(model_, bodies_[a], loads[a]);
+    }
+  for (std::size_t a = 0; a < state_.solids.size(); ++a)
+    finish_step(model_, state_.step, state_.solids[a], std::move(loads[a]), state_.outside_impulse);
+}
+
+template class SerialEngine<2>;
+template class SerialEngine<3>;
+
+}  // namespace mappm

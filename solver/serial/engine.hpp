@@ -1,0 +1,53 @@
+// The reference engine: one process, plain loops in double, a step that reads like the paper.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "particles/engine.hpp"
+#include "particles/frozen.hpp"
+#include "particles/model.hpp"
+#include "particles/state.hpp"
+#include "physics/wall.hpp"
+#include "serial/neighbours.hpp"
+
+namespace mappm {
+
+template <int D>
+class SerialEngine {
+ public:
+  SerialEngine(const Model<D>& model, State<D>&& state, Neighbours neighbours);
+
+  void step();
+  State<D>& state() { return state_; }
+  const std::string& range_error() const { return range_error_; }
+  PhaseSeconds phase_seconds() const { return {{"pairs", pair_seconds_}, {"integrate", integrate_seconds_}}; }
+
+ private:
+  void place_solids();
+  void find_neighbours();
+  template <class Kernel, bool transport>
+  void sum_over_fluid(std::size_t i);
+  template <class Kernel, bool transport>
+  void sum_over_frozen(std::size_t i);
+  template <class Kernel>
+  void sum_frozen_densities();
+  void move_fluid();
+  void move_solids();
+
+  const Model<D>& model_;
+  State<D> state_;
+  NeighbourSearch<D> fluid_cells_, frozen_cells_;
+
+  // Of the present step:
+  std::vector<VolumeTerms<double>> volume_;        // of the PPs
+  std::vector<NeighbourSums<D>> sums_;             // of the PPs
+  std::vector<SolidInStep<D>> bodies_;
+  std::vector<FrozenInStep<D>> frozen_;
+  std::vector<NeighbourSums<D>> frozen_sums_;
+
+  std::string range_error_;
+  double pair_seconds_ = 0.0, integrate_seconds_ = 0.0;
+};
+
+}  // namespace mappm

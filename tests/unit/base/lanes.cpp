@@ -1,0 +1,60 @@
+// Oracle: the scalar function of the same name, lane by lane.
+#include "base/lanes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <numeric>
+
+namespace mappm {
+namespace {
+
+std::array<double, lane_count> ramp(double first, double step) {
+  std::array<double, lane_count> values{};
+  for (int lane = 0; lane < lane_count; ++lane) values[lane] = first + step * lane;
+  return values;
+}
+
+TEST(Lanes, elementary_functions_are_those_of_double) {
+  const auto a = ramp(0.1, 0.7);
+  const auto b = ramp(2.0, -0.3);
+  const Lanes x = load_lanes(a.data());
+  const Lanes y = load_lanes(b.data());
+  const Lanes root = square_root(x), large = larger(x, y), small = smaller(x, y);
+  for (int lane = 0; lane < lane_count; ++lane) {
+    EXPECT_EQ(root[lane], square_root(a[lane]));
+    EXPECT_EQ(large[lane], larger(a[lane], b[lane]));
+    EXPECT_EQ(small[lane], smaller(a[lane], b[lane]));
+  }
+}
+
+TEST(Lanes, first_lanes_replaces_the_rest) {
+  const auto a = ramp(1.0, 1.0);
+  for (int count = 0; count <= lane_count; ++count) {
+    const Lanes kept = first_lanes(count, load_lanes(a.data()), -9.0);
+    for (int lane = 0; lane < lane_count; ++lane) EXPECT_EQ(kept[lane], lane < count ? a[lane] : -9.0);
+  }
+}
+
+TEST(Lanes, store_first_lanes_leaves_the_rest_of_memory_alone) {
+  for (int count = 0; count <= lane_count; ++count) {
+    std::array<std::int64_t, lane_count> memory;
+    memory.fill(77);
+    store_first_lanes(count, IntLanes(5), memory.data());
+    for (int lane = 0; lane < lane_count; ++lane) EXPECT_EQ(memory[lane], lane < count ? 5 : 77);
+  }
+}
+
+TEST(Lanes, store_and_sum_integers) {
+  const auto a = ramp(-3.0, 5.0);
+  const IntLanes fixed = to_fixed(load_lanes(a.data()));
+  std::array<std::int64_t, lane_count> stored{};
+  store_lanes(fixed, stored.data());
+  for (int lane = 0; lane < lane_count; ++lane) EXPECT_EQ(stored[lane], static_cast<std::int64_t>(a[lane]));
+  EXPECT_EQ(sum_of_lanes(fixed), std::accumulate(stored.begin(), stored.end(), std::int64_t{0}));
+  const IntLanes again = load_lanes(stored.data());
+  for (int lane = 0; lane < lane_count; ++lane) EXPECT_EQ(again[lane], stored[lane]);
+}
+
+}  // namespace
+}  // namespace mappm

@@ -1,0 +1,34 @@
+// Oracle: values worked by hand (all operations exact in binary).
+#include "physics/state_equation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/lanes.hpp"
+
+namespace mappm {
+namespace {
+
+TEST(StateEquation, pressure_by_hand) {
+  EXPECT_EQ(pressure(10.5, 10.0, 2.0, 0.25), 2.25);  // 4 * 0.5 + 0.25
+  EXPECT_EQ(pressure(10.0, 10.0, 2.0, 0.0), 0.0);
+  EXPECT_EQ(pressure(8.0, 10.0, 1.0, 0.5), -1.5);
+}
+
+TEST(StateEquation, volume_terms_by_hand) {
+  const auto terms = volume_terms(8.0, 10.0, 1.0, 0.5);  // V^2 = 1/64, p = -3/2
+  EXPECT_EQ(terms.v2, 0.015625);
+  EXPECT_EQ(terms.pv2, -0.0234375);
+}
+
+TEST(StateEquation, lanes_have_the_bits_of_double) {
+  const Lanes rho([](auto lane) { return 9.3 + 0.11 * static_cast<double>(lane); });
+  const auto terms = volume_terms(rho, 9.7, 1.0, 0.01);
+  for (int lane = 0; lane < lane_count; ++lane) {
+    const auto one = volume_terms<double>(rho[lane], 9.7, 1.0, 0.01);
+    EXPECT_EQ(terms.v2[lane], one.v2);
+    EXPECT_EQ(terms.pv2[lane], one.pv2);
+  }
+}
+
+}  // namespace
+}  // namespace mappm

@@ -1,0 +1,90 @@
+"""python3 -m verification list | run CASE | report | compare-bits SCENE"""
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+
+from verification.case import TIERS, CaseError, all_cases, find_case
+from verification.compare import compare
+from verification.judge import CORRECT, run_and_judge
+from verification.solver import ROOT, Options, SolverError
+
+
+def list_cases() -> int:
+    for case in all_cases():
+        print(f"{case.name:22} {case.tier:6} {case.cost:6g} s  {case.purpose}")
+    return 0
+
+
+def run_one(name: str, overrides: list[str], out: Path | None, ranks: int) -> int:
+    case = find_case(name)
+    folder = out or ROOT / "runs" / case.name
+    _, outcomes = run_and_judge(case, folder, Options(ranks=ranks, overrides=tuple(overrides)))
+    for outcome in outcomes:
+        print(outcome.line)
+    if not outcomes:
+        print(f"{case.name}: ran to its end; its manifest names no observable. Series in {folder}/series.csv")
+    return 0 if all(outcome.verdict == CORRECT for outcome in outcomes) else 1
+
+
+def compare_bits(scene: Path, ranks: list[int], steps: int | None, every: int | None) -> int:
+    """The serial reference and `ranks` of the parallel solver."""
+    overrides = () if every is None else (f"output.sample={every}",)
+    variants = [Options(ranks=count, steps=steps, overrides=overrides) for count in [0, *ranks]]
+    with tempfile.TemporaryDirectory() as folder:
+        comparison = compare(scene, Path(folder), variants)
+    print("\n".join(comparison.lines))
+    return 0 if comparison.equal else 1
+
+
+def _ranks(text: str) -> list[int]:
+    ranks = [int(word) for word in text.split(",")]
+    if min(ranks) < 1 or len(set(ranks)) != len(ranks):
+        raise ValueError(text)
+    return ranks
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python3 -m verification", description=__doc__)
+    commands = parser.add_subparsers(dest="command", required=True)
+    commands.add_parser("list", help="the cases, their tier and their cost in core-seconds")
+
+    one = commands.add_parser("run", help="run a case and print a line an observable")
+    one.add_argument("case", help="name of a folder of cases/, or the path of a scene")
+    one.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="override a key of the scene")
+    one.add_argument("--out", type=Path, help="folder of the run (default runs/CASE)")
+    one.add_argument("--ranks", type=int, default=1, help="ranks of the parallel solver; 0 is the serial reference")
+
+    report = commands.add_parser("report", help="write the report")
+    report.add_argument("--tier", choices=TIERS, default="quick")
+    report.add_argument("--out", type=Path, default=ROOT / "reports" / "out")
+
+    bits = commands.add_parser("compare-bits", help="compare digests of the serial reference and the parallel solver")
+    bits.add_argument("scene", type=Path)
+    bits.add_argument("--ranks", type=_ranks, default=[1, 2], metavar="1,2,4", help="default 1,2")
+    bits.add_argument("--steps", type=int, help="default: those of the scene")
+    bits.add_argument("--every", type=int, metavar="K", help="steps between comparisons (default: those of the scene)")
+    return parser
+
+
+def main() -> int:
+    arguments = _parser().parse_args()
+    match arguments.command:
+        case "list":
+            return list_cases()
+        case "run":
+            return run_one(arguments.case, arguments.set, arguments.out, arguments.ranks)
+        case "compare-bits":
+            return compare_bits(arguments.scene, arguments.ranks, arguments.steps, arguments.every)
+        case "report":
+            from verification.report import write_report  # drawing libraries load slowly
+
+            return write_report(arguments.tier, arguments.out)
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except (CaseError, SolverError) as error:
+        sys.exit(f"verification: {error}")

@@ -1,0 +1,53 @@
+"""Fits of a time series: what it tends to, how it decays, how it oscillates."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Limit:
+    """What a relaxing series tends to: `value` by extrapolation, `last` the mean of its last tenth, `noise` the standard
+    deviation of the residuals."""
+
+    value: float
+    last: float
+    noise: float
+
+    @property
+    def gap(self) -> float:
+        """Relative distance of the extrapolation from the end of the series."""
+        return abs(self.value - self.last) / abs(self.value)
+
+
+def extrapolate(time: np.ndarray, values: np.ndarray) -> Limit:
+    """Fits a + b exp(-t / tau) to the second half of a series; tau is searched from a thirtieth of the half to its length.
+
+    A tau beyond the length of the data is not determined by them, which shows as a gap between value and last.
+    """
+    half = time >= 0.5 * (time[0] + time[-1])
+    t, y = time[half] - time[half][0], values[half]
+    if len(t) < 8:
+        raise ValueError(f"{len(t)} samples in the second half of the run; sample more often or run longer")
+
+    def fit(tau: float) -> tuple[float, float]:
+        basis = np.column_stack([np.ones_like(t), np.exp(-t / tau)])
+        coefficients, *_ = np.linalg.lstsq(basis, y, rcond=None)
+        return float(np.std(y - basis @ coefficients)), float(coefficients[0])
+
+    noise, value = min(fit(tau) for tau in t[-1] * np.geomspace(1 / 30, 1, 60))
+    return Limit(value, float(np.mean(y[-max(1, len(values) // 10) :])), noise)
+
+
+def decay_rate(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
+    """(rate, its standard error) of a positive series that falls as exp(-rate t)."""
+    coefficients, covariance = np.polyfit(time, np.log(values), 1, cov=True)
+    return float(-coefficients[0]), float(np.sqrt(covariance[0, 0]))
+
+
+def minima(time: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Times of the minima of an oscillating series, each from the parabola through its lowest three samples."""
+    lowest = 1 + np.flatnonzero((values[1:-1] < values[:-2]) & (values[1:-1] <= values[2:]))
+    left, here, right = values[lowest - 1], values[lowest], values[lowest + 1]
+    shift = 0.5 * (left - right) / (left - 2 * here + right)
+    return time[lowest] + shift * (time[1] - time[0])

@@ -1,0 +1,128 @@
+"""What a run measured. Every function takes a Run and returns a Measured in the terms of its case's manifest.
+
+The formulas are those of the exact solutions and of the published drag tables; no figure of the solver enters but the
+fields it wrote and the scene it was given.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from verification.fits import decay_rate, extrapolate, minima
+from verification.solver import Run
+
+# A drag counts when the force of the fluid on the solid balances the body force, and the velocity has settled, to this.
+SETTLED = 0.005
+
+
+@dataclass(frozen=True)
+class Measured:
+    """value +- uncertainty, and why it cannot be accepted, if so."""
+
+    value: float
+    uncertainty: float
+    objection: str = ""
+
+
+def _wave_number(run: Run) -> float:
+    wave = run.scene["fluid"]["wave"]
+    return 2 * np.pi * wave.get("mode", 1) / run.scene["box"]["size"]["xyz".index(wave["gradient"])]
+
+
+def viscosity(run: Run) -> Measured:
+    """nu / nu_declared of a decaying shear wave: its kinetic energy falls as exp(-2 nu k^2 t).
+
+    Measured over the fall of the energy from 0.8 to 0.1 of its start: past the first adjustment of the lattice, and well
+    above the energy of the particles' disorder.
+    """
+    fluid, series = run.scene["fluid"], run.series
+    energy = series["fluid_energy"] / series["fluid_energy"][0]
+    window = (energy < 0.8) & (energy > 0.1)
+    rate, error = decay_rate(series["time"][window], energy[window])
+    declared = 2 * fluid["viscosity"] / fluid["density"] * _wave_number(run) ** 2
+    return Measured(rate / declared, error / declared)
+
+
+def sound_speed(run: Run) -> Measured:
+    """c / c_declared of a standing sound wave: its kinetic energy goes as cos^2(c k t), with minima pi / (c k) apart.
+
+    The damping, isothermal sound's nu k^2 or so, lowers the frequency by less than 1e-4 in the cases here.
+    """
+    times = minima(run.series["time"], run.series["fluid_energy"])
+    if len(times) < 4:
+        return Measured(float("nan"), float("inf"), f"only {len(times)} minima of the kinetic energy; run longer")
+    index = np.arange(len(times))
+    (spacing, _), covariance = np.polyfit(index, times, 1, cov=True)
+    speed = np.pi / (spacing * _wave_number(run)) / run.scene["fluid"]["sound_speed"]
+    return Measured(float(speed), float(speed * np.sqrt(covariance[0, 0]) / spacing))
+
+
+def poiseuille(run: Run) -> Measured:
+    """Root-mean-square difference between the last velocity profile and the parabola g y (H - y) / (2 nu), in units of
+    its largest value."""
+    fluid, (wall,) = run.scene["fluid"], [body for body in run.scene["body"] if body["shape"] == "wall"]
+    normal = "xyz".index(wall["axis"])
+    force = np.array(run.scene["force"]["fluid"])
+    along = int(np.argmax(np.abs(force)))
+    side = run.scene["box"]["size"][normal]
+    width = side - wall["thickness"]
+    particles = run.fluid()
+    y = (particles["points"][:, normal] - wall["position"] - wall["thickness"]) % side
+    exact = force[along] * y * (width - y) / (2 * fluid["viscosity"] / fluid["density"])
+    largest = abs(force[along]) * width**2 / (8 * fluid["viscosity"] / fluid["density"])
+    difference = (particles["velocity"][:, along] - exact) / largest
+    moving = extrapolate(run.series["time"], run.series["fluid_velocity_" + "xyz"[along]])
+    objection = "" if moving.gap < SETTLED else f"the flow has not settled: {100 * moving.gap:.2f} % to go"
+    return Measured(float(np.sqrt(np.mean(difference**2))), moving.gap, objection)
+
+
+def _cell(run: Run) -> tuple[int, float, float, float]:
+    """(axis of the flow, acceleration, volume of the cell, volume of the one solid)."""
+    (body,) = run.scene["body"]
+    force = np.array(run.scene["force"]["fluid"])
+    axis = int(np.argmax(np.abs(force)))
+    box = run.scene["box"]["size"]
+    solid = np.pi * body["radius"] ** 2 if len(box) == 2 else 4 / 3 * np.pi * body["radius"] ** 3
+    return axis, float(force[axis]), float(np.prod(box)), float(solid)
+
+
+def drag(run: Run) -> Measured:
+    """F / (mu U) in the plane, F / (6 pi mu R U) in space, of one solid in a periodic cell.
+
+    F is the mean pressure gradient times the volume of the whole cell, rho g V; the force on the surface is less by the
+    solid's volume, rho g (V - V_s). U is the superficial velocity, over the whole cell. (Convention of Sangani and
+    Acrivos 1982, Zick and Homsy 1982.) A free solid is held by no one: there the frame is that of the solid.
+    """
+    axis, acceleration, cell, solid = _cell(run)
+    fluid, series = run.scene["fluid"], run.series
+    name = "xyz"[axis]
+    velocity = series["superficial_velocity_" + name]
+    if "slip_" + name in series and run.scene["body"][0].get("motion", "free") != "fixed":
+        velocity = -series["slip_" + name] * (1 - solid / cell)
+    limit = extrapolate(series["time"], velocity)
+    scale = fluid["viscosity"] * limit.value
+    if len(run.scene["box"]["size"]) == 3:
+        scale *= 6 * np.pi * run.scene["body"][0]["radius"]
+    value = fluid["density"] * acceleration * cell / scale
+    filled = series["superficial_velocity_" + name][-1] / series["fluid_velocity_" + name][-1]  # with PPs, of the cell
+    on_surface = extrapolate(series["time"], series["drag_" + name]).value
+    imbalance = abs(on_surface / (fluid["density"] * acceleration * cell * filled) - 1)
+    objections = []
+    if imbalance > SETTLED:
+        objections.append(f"forces out of balance by {100 * imbalance:.2f} %")
+    if limit.gap > SETTLED:
+        objections.append(f"velocity {100 * limit.gap:.2f} % from its extrapolation")
+    uncertainty = value * float(np.hypot(limit.noise / limit.value, np.hypot(limit.gap, imbalance)))
+    return Measured(float(value), uncertainty, "; ".join(objections))
+
+
+def largest_velocity(run: Run) -> Measured:
+    """Largest speed of a PP in the last snapshot over the sound speed."""
+    speed = np.linalg.norm(run.fluid()["velocity"], axis=1)
+    return Measured(float(speed.max()) / run.scene["fluid"]["sound_speed"], 0.0)
+
+
+OBSERVABLES: dict[str, Callable[[Run], Measured]] = {
+    function.__name__: function for function in (viscosity, sound_speed, poiseuille, drag, largest_velocity)
+}

@@ -1,0 +1,62 @@
+"""Fields in the plane, drawn with pyvista without a display."""
+
+import os
+from pathlib import Path
+
+os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")  # asks for no X server
+
+import numpy as np  # noqa: E402
+import pyvista as pv  # noqa: E402
+
+from verification.solver import Run  # noqa: E402
+
+PIXELS = 1500  # of the longer side
+
+
+def velocity_field(run: Run, file: Path, which: int = -1) -> None:
+    """Speed of the PPs relative to their mean as coloured points, the solids as grey discs over them.
+
+    The longer side of the box lies across the picture.
+    """
+    fluid, solids = run.fluid(which), run.solids(which)
+    box = np.array(run.scene["box"]["size"], dtype=float)
+    turned = bool(box[1] > box[0])
+    across, up = (1, 0) if turned else (0, 1)
+    width, height = box[across], box[up]
+
+    def flat(points: np.ndarray) -> np.ndarray:
+        return np.column_stack([points[:, across], points[:, up], np.zeros(len(points))])
+
+    speed = np.linalg.norm(fluid["velocity"] - fluid["velocity"].mean(axis=0), axis=1)
+    unit = run.series.units["slip_x"]
+    title = "speed relative to the mean of the fluid" + (f" ({unit})" if unit else "")
+
+    bar = 0.16  # of the picture's height, for the scale
+    size = (PIXELS, max(260, round(PIXELS * height / width / (1 - bar))))
+    plotter = pv.Plotter(off_screen=True, window_size=list(size))
+    plotter.set_background("white")
+    cloud = pv.PolyData(flat(fluid["points"]))
+    cloud[title] = speed
+    spacing = (width * height / len(speed)) ** 0.5
+    plotter.add_mesh(
+        cloud, scalars=title, cmap="viridis", clim=[0.0, float(np.quantile(speed, 0.998))], style="points",
+        point_size=max(2.0, 1.3 * PIXELS * spacing / width), lighting=False,
+        scalar_bar_args={"position_x": 0.25, "position_y": 0.01, "width": 0.5, "height": 0.5 * bar, "color": "black",
+                         "title_font_size": 18, "label_font_size": 16, "fmt": "%.3g"},
+    )
+    for centre, radius in zip(flat(solids["points"]), solids["radius"], strict=True):
+        for i in (-1, 0, 1):  # periodic images that reach into the box
+            for j in (-1, 0, 1):
+                x, y = centre[0] + i * width, centre[1] + j * height
+                if -radius < x < width + radius and -radius < y < height + radius:
+                    disc = pv.Disc(center=(x, y, 1e-3 * width), inner=0.0, outer=radius, c_res=48)
+                    plotter.add_mesh(disc, color="#3a3f47", lighting=False)
+    plotter.enable_parallel_projection()
+    shown = height / (1 - bar)
+    plotter.camera.focal_point = (0.5 * width, height - 0.5 * shown, 0.0)
+    plotter.camera.position = (0.5 * width, height - 0.5 * shown, width)
+    plotter.camera.up = (0.0, 1.0, 0.0)
+    plotter.camera.parallel_scale = 0.5 * shown
+    plotter.camera.clipping_range = (0.5 * width, 2.0 * width)
+    plotter.screenshot(file)
+    plotter.close()
