@@ -50,14 +50,14 @@ class Options:
     domains: str | None = None
     threads: int | None = None
     resume: Path | None = None
-    search: str | None = None  # neighbour search of the reference
+    neighbours: str | None = None  # search of the reference: "cells" or "all-pairs"
     build: Path | None = None
 
     @property
     def label(self) -> str:
         parts = [f"P={self.ranks}" if self.ranks else "serial reference"]
-        if self.search:
-            parts.append(self.search)
+        if self.neighbours:
+            parts.append(self.neighbours)
         if self.domains:
             parts.append(f"domains {self.domains}")
         if self.threads:
@@ -78,7 +78,7 @@ class Options:
             ("--domains", self.domains),
             ("--threads", self.threads),
             ("--resume", self.resume),
-            ("--search", self.search),
+            ("--neighbours", self.neighbours),
         ):
             if value is not None:
                 line += [flag, str(value)]
@@ -109,7 +109,7 @@ class Run:
 
     def snapshots(self, kind: str = "fluid") -> list[Path]:
         """Files in the order of their steps; kind is "fluid" (PPs and FPs) or "solids" (a point a ball)."""
-        return sorted(self.folder.glob(f"{kind}_*.vtkhdf"))
+        return sorted(self.folder.glob(f"snapshots/{kind}_*.vtkhdf"))
 
     def fluid(self, which: int = -1) -> dict[str, np.ndarray]:
         """The PPs of a snapshot, the last by default: points (n, 3), velocity (n, 3), density ...; scene units."""

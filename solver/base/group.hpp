@@ -32,8 +32,6 @@ class Group {
   /// HDF5 file-access property list for a file that all members open together: an hid_t that the caller closes, or 0
   /// (H5P_DEFAULT).
   virtual std::int64_t hdf5_file_access() const = 0;
-  /// HDF5 transfer property list for collective writes: an hid_t that the caller closes, or 0 (H5P_DEFAULT).
-  virtual std::int64_t hdf5_transfer() const = 0;
 
   bool is_first() const { return rank() == 0; }
 };

@@ -18,7 +18,6 @@ class SingleGroup : public Group {
   std::vector<double> gather(const std::vector<double>& values) const override { return values; }
   void barrier() const override {}
   std::int64_t hdf5_file_access() const override { return 0; }
-  std::int64_t hdf5_transfer() const override { return 0; }
 };
 
 }  // namespace mappm

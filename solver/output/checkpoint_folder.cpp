@@ -81,8 +81,8 @@ fs::path save_checkpoint(const fs::path& folder, const std::string& scene_text, 
     const std::vector<fs::path> kept = agreed_list(folder, group);
     std::error_code ignored;
     if (group.is_first()) fs::remove(partial_name(path), ignored);
-    throw InputError(std::string(error.what()) + "; free space or choose another folder with --out" +
-                     (kept.empty() ? "" : "; the last checkpoint is kept, resume with --resume " + kept[0].string()));
+    throw InputError(error.what() +
+                     (kept.empty() ? "" : "; the last checkpoint is kept: --resume " + kept[0].string()));
   }
   on_first(group, [&] {
     const std::vector<fs::path> all = list_checkpoints(folder);

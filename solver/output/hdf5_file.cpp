@@ -1,6 +1,7 @@
 #include "output/hdf5_file.hpp"
 
 #include <array>
+#include <filesystem>
 
 #include "base/error.hpp"
 #include "output/together.hpp"
@@ -41,7 +42,7 @@ herr_t keep_cause(unsigned, const H5E_error2_t* error, void* to) {
   return 0;
 }
 
-/// What the operating system said, or else the innermost message of the library.
+/// What the operating system said, or else the innermost message of the library (MPI does not say why).
 std::string last_cause() {
   std::string cause;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_cause, &cause);
@@ -49,14 +50,24 @@ std::string last_cause() {
   return cause.empty() ? "unknown error of HDF5" : cause;
 }
 
+[[noreturn]] void refuse_to_write(const std::string& path) {
+  const std::string cause = last_cause();
+  std::error_code failed;
+  const auto folder = std::filesystem::path(path).parent_path();
+  const auto space = std::filesystem::space(folder.empty() ? "." : folder, failed);
+  throw InputError(path + ": cannot be written: " + cause +
+                   (failed ? "" : ", " + std::to_string(space.available >> 10) + " KiB are left on its disk") +
+                   "; free space, or choose another folder with --out");
+}
+
 /// A handle, or an InputError.
 Hdf5Handle checked(hid_t id, herr_t (*release)(hid_t), const std::string& path) {
-  if (id < 0) throw InputError(path + ": cannot be written: " + last_cause());
+  if (id < 0) refuse_to_write(path);
   return {id, release};
 }
 
 void check(herr_t status, const std::string& path) {
-  if (status < 0) throw InputError(path + ": cannot be written: " + last_cause());
+  if (status < 0) refuse_to_write(path);
 }
 
 /// Two-dimensional for a width, one-dimensional for 0.
@@ -78,7 +89,6 @@ void select_rows(hid_t space, std::uint64_t first, std::uint64_t count, std::siz
 Hdf5Writer::Hdf5Writer(const std::string& path, const Group& group) : path_(path), group_(group) {
   set_up_library();
   const Hdf5Handle access(group.hdf5_file_access(), H5Pclose);
-  transfer_ = Hdf5Handle(group.hdf5_transfer(), H5Pclose);
   together(group, [&] {
     file_ = checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose, path);
   });
@@ -135,17 +145,17 @@ void Hdf5Writer::rows(const std::string& name, const std::vector<T>& values, std
     select_rows(in_file.id(), before, mine, width);
     const Hdf5Handle in_memory = row_space(mine, width);
     if (mine == 0) H5Sselect_none(in_memory.id());
-    check(H5Dwrite(data.id(), hdf5_type<T>(), in_memory.id(), in_file.id(), transfer_.id(), values.data()), path_);
+    check(H5Dwrite(data.id(), hdf5_type<T>(), in_memory.id(), in_file.id(), H5P_DEFAULT, values.data()), path_);
   });
   together(group_, [&] {  // small data sets reach the disk only here
-    if (!data.close()) check(-1, path_);
+    if (!data.close()) refuse_to_write(path_);
   });
 }
 
 void Hdf5Writer::close() {
   together(group_, [&] { check(H5Fflush(file_.id(), H5F_SCOPE_GLOBAL), path_); });
   together(group_, [&] {
-    if (!file_.close()) check(-1, path_);
+    if (!file_.close()) refuse_to_write(path_);
   });
 }
 

@@ -41,6 +41,10 @@ hid_t hdf5_type();
 
 /// A file written by all processes of a group together. Every method is collective and throws InputError on all of
 /// them with the cause (a full disk, a missing permission) if it failed on any.
+///
+/// Rows are written by each process for itself (independent transfer): its part of a data set is one stretch of the
+/// file, so nothing is gained by collecting parts first, and where a disk is full, Open MPI's collective writing leaves
+/// some processes waiting for ever.
 class Hdf5Writer {
  public:
   /// Makes the file, replacing one of that name.
@@ -61,7 +65,7 @@ class Hdf5Writer {
  private:
   std::string path_;
   const Group& group_;
-  Hdf5Handle file_, transfer_;
+  Hdf5Handle file_;
 };
 
 /// A file read by one process for itself. Throws InputError naming the file and what is missing.

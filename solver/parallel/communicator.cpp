@@ -99,12 +99,6 @@ std::int64_t Communicator::hdf5_file_access() const {
   return access;
 }
 
-std::int64_t Communicator::hdf5_transfer() const {
-  const hid_t transfer = H5Pcreate(H5P_DATASET_XFER);
-  H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE);
-  return transfer;
-}
-
 void Communicator::exchange(std::span<const int> partners, std::span<Buffer> out, std::span<Buffer> in) const {
   auto& requests = impl_->requests;
   requests.clear();
@@ -129,11 +123,12 @@ void Communicator::exchange(std::span<const int> partners, std::span<Buffer> out
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
 }
 
-std::vector<Buffer> Communicator::exchange_all(const std::vector<Buffer>& out) const {
+std::vector<Buffer> Communicator::exchange_all(std::vector<Buffer>&& out) const {
   std::vector<int> ranks(out.size());
   for (std::size_t r = 0; r < ranks.size(); ++r) ranks[r] = static_cast<int>(r);
-  std::vector<Buffer> sent = out, received(out.size());
-  exchange(ranks, sent, received);
+  std::vector<Buffer> received(out.size());
+  exchange(ranks, out, received);
+  out.clear();
   return received;
 }
 

@@ -31,14 +31,13 @@ class Communicator : public Group {
   std::vector<double> gather(const std::vector<double>& values) const override;
   void barrier() const override;
   std::int64_t hdf5_file_access() const override;
-  std::int64_t hdf5_transfer() const override;
 
   /// Sends `out[n]` to rank `partners[n]` and receives one message from each into `in[n]`. Partners are mutual. A
   /// partner that is this rank itself is a copy. One message pair a partner.
   void exchange(std::span<const int> partners, std::span<Buffer> out, std::span<Buffer> in) const;
 
   /// Sends out[r] to every rank r and receives from all; for rare events (a new decomposition), not for steps.
-  std::vector<Buffer> exchange_all(const std::vector<Buffer>& out) const;
+  std::vector<Buffer> exchange_all(std::vector<Buffer>&& out) const;
 
  private:
   struct Impl;

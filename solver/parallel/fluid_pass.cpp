@@ -18,6 +18,17 @@ void add_to_fields(const PairFields<D>& fields, std::size_t i, const NeighbourSu
   fields.density[i] += sums.density;
 }
 
+template <class T>
+void fit(std::vector<T>& values, std::size_t count) {
+  reserve_tightly(values, count);
+  values.resize(count);
+}
+
+void clear(std::vector<std::int64_t>& sums, std::size_t count) {
+  reserve_tightly(sums, count);
+  sums.assign(count, 0);
+}
+
 struct UnitFactor {
   template <int D>
   Lanes operator()(const Vec<D, Lanes>&) const {
@@ -42,12 +53,9 @@ NeighbourSums<D> FluidPass<D>::sums(std::size_t i) const {
 template <int D>
 void FluidPass<D>::prepare(FluidParticles<D>& fluid) {
   const std::size_t count = fluid.size(), padded = count + lane_count;
-  for (auto& values : fluid.field) {  // a whole lane may be read behind the last particle; it is never used
-    values.resize(padded);
-    values.resize(count);
-  }
-  v2_.resize(padded);
-  pv2_.resize(padded);
+  for (auto& values : fluid.field) reserve_tightly(values, padded);  // whole lanes are read behind the last particle
+  fit(v2_, padded);
+  fit(pv2_, padded);
   for (std::size_t i = 0; i < count; ++i) {
     const auto volume = volume_terms(fluid.density()[i], model_.rest_density, 1.0, model_.background);
     v2_[i] = volume.v2;
@@ -55,10 +63,10 @@ void FluidPass<D>::prepare(FluidParticles<D>& fluid) {
   }
   for (int axis = 0; axis < D; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    impulse_[a].assign(padded, 0);
-    if (model_.terms.transport) shift_[a].assign(padded, 0);
+    clear(impulse_[a], padded);
+    if (model_.terms.transport) clear(shift_[a], padded);
   }
-  density_.assign(padded, 0);
+  clear(density_, padded);
 }
 
 template <int D>

@@ -44,7 +44,11 @@ void redistribute(const Model<D>& model, const Domains<D>& domains, const Commun
     owner[i] = domains.owner(x);
     ++count[static_cast<std::size_t>(owner[i])];
   }
-  for (std::size_t rank = 0; rank < out.size(); ++rank) put(out[rank], count[rank]);
+  constexpr std::size_t particle_bytes = sizeof(double) * (1 + FluidParticles<D>::field_count);
+  for (std::size_t rank = 0; rank < out.size(); ++rank) {
+    out[rank].reserve(sizeof(std::uint64_t) + count[rank] * particle_bytes);
+    put(out[rank], count[rank]);
+  }
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     Buffer& buffer = out[static_cast<std::size_t>(owner[i])];
     put(buffer, fluid.id[i]);
@@ -53,13 +57,18 @@ void redistribute(const Model<D>& model, const Domains<D>& domains, const Commun
   for (const Solid<D>& solid : state.solids)
     put_solid(out[static_cast<std::size_t>(domains.owner(solid.x))], solid, solid.x, all_frozen(solid), true);
 
-  state.fluid.resize(0);
+  state.fluid.release();
   state.solids.clear();
-  for (const Buffer& buffer : communicator.exchange_all(out)) {
+  const std::vector<Buffer> received = communicator.exchange_all(std::move(out));
+  std::uint64_t total = 0;
+  for (const Buffer& buffer : received) total += BufferReader(buffer).get<std::uint64_t>();
+  state.fluid.resize(total);
+  std::size_t i = 0;
+  for (const Buffer& buffer : received) {
     BufferReader reader(buffer);
-    for (auto particles = reader.get<std::uint64_t>(); particles > 0; --particles) {
-      state.fluid.id.push_back(reader.get<std::uint64_t>());
-      for (auto& values : state.fluid.field) values.push_back(reader.get<double>());
+    for (auto particles = reader.get<std::uint64_t>(); particles > 0; --particles, ++i) {
+      state.fluid.id[i] = reader.get<std::uint64_t>();
+      for (auto& values : state.fluid.field) values[i] = reader.get<double>();
     }
     while (!reader.at_end()) state.solids.push_back(get_solid(reader, model));
   }

@@ -75,6 +75,7 @@ class CellGrid {
  private:
   template <class T>
   void permute(std::vector<T>& values, std::vector<T>& scratch) const {
+    reserve_tightly(scratch, values.size());
     scratch.resize(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) scratch[target_[i]] = values[i];
     values.swap(scratch);

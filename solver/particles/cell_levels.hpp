@@ -81,7 +81,7 @@ class CellLevels {
     level.mesh = mesh;
     std::size_t cells = 1;
     for (int axis = 0; axis < D; ++axis) {
-      level.count[axis] = std::max(1, static_cast<int>((high_[axis] - low_[axis]) / mesh));
+      level.count[axis] = std::max(1, static_cast<int>(std::ceil((high_[axis] - low_[axis]) / mesh)));
       cells *= static_cast<std::size_t>(level.count[axis]);
     }
     level.cells.resize(cells);

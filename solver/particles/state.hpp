@@ -13,6 +13,13 @@
 
 namespace mappm {
 
+/// Makes room for `count` values, a tenth more than needed: the doubling of a vector would cost more memory than all
+/// other arrays of a step.
+template <class T>
+void reserve_tightly(std::vector<T>& values, std::size_t count) {
+  if (count > values.capacity()) values.reserve(count + count / 10);
+}
+
 /// The field table of the PPs: it feeds allocation, halo, output, checkpoint and digest. All values are integers,
 /// kept in doubles that hold them exactly: x in position quanta, v in multiples of velocity_quantum (PP mass 1, so
 /// this is the momentum too), density in multiples of density_quantum.
@@ -31,12 +38,17 @@ struct FluidParticles {
 
   std::size_t size() const { return id.size(); }
   void resize(std::size_t count) {
+    reserve_tightly(id, count);
     id.resize(count);
-    for (auto& values : field) values.resize(count);
+    for (auto& values : field) {
+      reserve_tightly(values, count);
+      values.resize(count);
+    }
   }
-  void reserve(std::size_t count) {
-    id.reserve(count);
-    for (auto& values : field) values.reserve(count);
+  /// Frees all memory.
+  void release() {
+    std::vector<std::uint64_t>().swap(id);
+    for (auto& values : field) std::vector<double>().swap(values);
   }
 };
 

@@ -42,6 +42,7 @@ PlacedFrozen<D> place(const Solid<D>& solid, const RigidVelocity<D>& velocity, c
                       const Vec<D, double>& length) {
   const Vec<D, double> offset = rotate(solid.orientation, frozen.offset);
   PlacedFrozen<D> placed;
+  placed.lever = offset;
   for (int axis = 0; axis < D; ++axis)
     placed.x[axis] = solid.x[axis] + static_cast<double>(to_fixed(offset[axis] / length[axis]));
   placed.v = velocity.linear + rotational_velocity<D>(velocity.angular, offset);

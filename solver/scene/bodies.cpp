@@ -17,10 +17,9 @@ Shape read_shape(const Fields& table) {
   const std::string shape = table.word("shape");
   if (plane && shape == "sphere") table.fail("shape", "the box has two sides; write \"disc\" or give it a third");
   if (!plane && shape == "disc") table.fail("shape", "the box has three sides; write \"sphere\"");
-  return table.choice<Shape>("shape", {{"disc", Shape::ball},
-                                       {"sphere", Shape::ball},
-                                       {"composite", Shape::composite},
-                                       {"wall", Shape::wall}});
+  return table.choice<Shape>(
+      "shape",
+      {{"disc", Shape::ball}, {"sphere", Shape::ball}, {"composite", Shape::composite}, {"wall", Shape::wall}});
 }
 
 BallScene read_ball(const Fields& table) {

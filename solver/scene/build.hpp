@@ -13,7 +13,6 @@ namespace mappm {
 template <int D>
 struct BuiltModel {
   Model<D> model;
-  std::uint64_t steps = 0;            // of the run, relaxation included
   std::uint64_t fluid_particles = 0;  // PPs in the whole box
   std::vector<std::string> warnings;  // one line each: scenes outside the mapped region, a step beyond its limit
 };

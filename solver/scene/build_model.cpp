@@ -40,8 +40,8 @@ Model<D> start_model(const Scene& scene, const Lattice<D>& lattice) {
 struct Matter {
   std::uint64_t fluid_particles = 0;
   double free_mass = 0.0;
-  double lightest = HUGE_VAL;        // free solid
-  double lightest_radius = 0.0;      // for contact, rcut
+  double lightest = HUGE_VAL;    // free solid
+  double lightest_radius = 0.0;  // for contact, rcut
   std::size_t free_solids = 0, ball_solids = 0;
 };
 
@@ -81,8 +81,8 @@ Terms find_terms(const Scene& scene, const Matter& matter) {
     terms.rotation = terms.rotation || (body.motion == Motion::free && body.rotates);
     walls = walls || is_wall(body);
   }
-  terms.contact = scene.contact.model != ContactModel::none && matter.free_solids > 0 &&
-                  (matter.ball_solids > 1 || walls);
+  terms.contact =
+      scene.contact.model != ContactModel::none && matter.free_solids > 0 && (matter.ball_solids > 1 || walls);
   return terms;
 }
 
@@ -94,8 +94,7 @@ Triple solid_acceleration(const Scene& scene, const Matter& matter) {
                      "needs a fluid and a free solid; write a list of accelerations");
   Triple balanced{};
   for (std::size_t axis = 0; axis < 3; ++axis)
-    balanced[axis] =
-        -scene.force.fluid[axis] * static_cast<double>(matter.fluid_particles) / matter.free_mass;
+    balanced[axis] = -scene.force.fluid[axis] * static_cast<double>(matter.fluid_particles) / matter.free_mass;
   return balanced;
 }
 
@@ -181,17 +180,10 @@ void fold_forces(const Scene& scene, const Matter& matter, Model<D>& model) {
     const auto a = static_cast<std::size_t>(axis);
     model.fluid_kick[axis] = round_to_quantum(scene.force.fluid[a] / unit * model.dt, velocity_quantum);
     model.solid_acceleration[axis] =
-        scene.force.balance ? -model.fluid_kick[axis] / model.dt * static_cast<double>(matter.fluid_particles) /
-                                  matter.free_mass
-                            : scene.force.solid[a] / unit;
+        scene.force.balance
+            ? -model.fluid_kick[axis] / model.dt * static_cast<double>(matter.fluid_particles) / matter.free_mass
+            : scene.force.solid[a] / unit;
   }
-}
-
-template <int D>
-std::uint64_t run_steps(const Scene& scene, const Model<D>& model) {
-  if (scene.run.duration == 0.0) return scene.run.relax + scene.run.steps;
-  const double steps = scene.run.duration / (model.dt * model.units.time());
-  return scene.run.relax + static_cast<std::uint64_t>(std::ceil(steps * (1.0 - 1e-12)));
 }
 
 }  // namespace
@@ -221,7 +213,7 @@ BuiltModel<D> make_model(const Scene& scene) {
   model.dt = step / model.units.time();
   fold_pair_law(scene, lattice, model);
   fold_forces(scene, matter, model);
-  BuiltModel<D> built{model, run_steps(scene, model), matter.fluid_particles, {}};
+  BuiltModel<D> built{model, matter.fluid_particles, {}};
   built.warnings = scene_warnings(scene, model, lattice, limits);
   return built;
 }

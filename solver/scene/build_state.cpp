@@ -103,9 +103,12 @@ AngularVec<D, double> multiply_inertia(const Shape<D>& shape, const AngularVec<D
 
 SolidMotion solid_motion(Motion motion) {
   switch (motion) {
-    case Motion::free: return SolidMotion::free;
-    case Motion::moving: return SolidMotion::moving;
-    case Motion::fixed: return SolidMotion::fixed;
+    case Motion::free:
+      return SolidMotion::free;
+    case Motion::moving:
+      return SolidMotion::moving;
+    case Motion::fixed:
+      return SolidMotion::fixed;
   }
   return SolidMotion::fixed;
 }

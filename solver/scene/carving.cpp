@@ -95,8 +95,9 @@ Carving<D>::Carving(const Scene& scene, const Model<D>& model, const Lattice<D>&
   std::sort(near.begin(), near.end(), [](const Ranked& a, const Ranked& b) {
     return a.second != b.second ? a.second < b.second : a.first < b.first;
   });
-  near.erase(std::unique(near.begin(), near.end(), [](const Ranked& a, const Ranked& b) { return a.second == b.second; }),
-             near.end());
+  near.erase(
+      std::unique(near.begin(), near.end(), [](const Ranked& a, const Ranked& b) { return a.second == b.second; }),
+      near.end());
   assert(wanted <= near.size());
   if (wanted == 0) return;
   const auto nth = near.begin() + static_cast<std::ptrdiff_t>(wanted - 1);
@@ -129,14 +130,13 @@ template <class F>
 void Carving<D>::visit_balls(const PlacedSolid<D>& solid, const NodeRange<D>& range, F&& f) const {
   const Shape<D>& shape = model_.shapes[solid.shape];
   std::array<Span, D> spans;
-  for (int axis = 0; axis < D; ++axis)
-    spans[axis] = span_around(lattice_, axis, solid.x[axis], shape.reach + band_);
+  for (int axis = 0; axis < D; ++axis) spans[axis] = span_around(lattice_, axis, solid.x[axis], shape.reach + band_);
   std::vector<Vec<D, double>> centres;
   for (const Ball<D>& ball : shape.balls) {
     Vec<D, double> centre;
     for (int axis = 0; axis < D; ++axis)
-      centre[axis] = wrap_position(
-          solid.x[axis] + static_cast<double>(to_fixed_wide(ball.offset[axis] / model_.pair.length[axis])));
+      centre[axis] = wrap_position(solid.x[axis] +
+                                   static_cast<double>(to_fixed_wide(ball.offset[axis] / model_.pair.length[axis])));
     centres.push_back(centre);
   }
   for_each_node<D>(lattice_, spans, range, [&](const std::array<std::uint64_t, D>& node) {
@@ -170,13 +170,11 @@ void Carving<D>::visit_wall(const BodyScene& wall, const NodeRange<D>& range, F&
   });
 }
 
-#define MAPPM_INSTANTIATE(D)                                                                                     \
-  template double solid_volume(const Scene&, const Model<D>&, const std::vector<PlacedSolid<D>>&);               \
-  template std::uint64_t kept_nodes(const Lattice<D>&, double);                                                  \
-  template class Carving<D>
-
-MAPPM_INSTANTIATE(2);
-MAPPM_INSTANTIATE(3);
-#undef MAPPM_INSTANTIATE
+template double solid_volume(const Scene&, const Model<2>&, const std::vector<PlacedSolid<2>>&);
+template double solid_volume(const Scene&, const Model<3>&, const std::vector<PlacedSolid<3>>&);
+template std::uint64_t kept_nodes(const Lattice<2>&, double);
+template std::uint64_t kept_nodes(const Lattice<3>&, double);
+template class Carving<2>;
+template class Carving<3>;
 
 }  // namespace mappm

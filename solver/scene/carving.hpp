@@ -47,7 +47,7 @@ class Carving {
   const Model<D>& model_;
   const Lattice<D>& lattice_;
   const std::vector<PlacedSolid<D>>& solids_;
-  double band_;        // nodes deeper than this are always removed, nodes farther out never
+  double band_;  // nodes deeper than this are always removed, nodes farther out never
   Ranked last_removed_;
 };
 

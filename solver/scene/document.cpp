@@ -31,6 +31,11 @@ std::vector<std::string> split(const std::string& path) {
   throw InputError("--set", key, value, fix);
 }
 
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') + 1 - first);
+}
+
 toml::table parse_value(const std::string& value) {
   try {
     toml::table parsed = toml::parse("value = " + value);
@@ -74,8 +79,8 @@ void erase(toml::table& tree, const std::string& path) {
 void apply_override(toml::table& tree, const std::string& text) {
   const std::size_t sign = text.find('=');
   if (sign == std::string::npos || sign == 0) fail(text, "", "is no override; write --set key.path=value");
-  const std::string path = text.substr(0, sign);
-  const std::string value = text.substr(sign + 1);
+  const std::string path = trimmed(text.substr(0, sign));
+  const std::string value = trimmed(text.substr(sign + 1));
   const std::vector<std::string> parts = split(path);
   toml::node* parent = &tree;
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) parent = &child(*parent, parts[i], path, value);
@@ -120,10 +125,18 @@ toml::table parse_document(const std::string& text, const std::string& file,
 std::string canonical_text(const toml::table& tree) {
   toml::table scene = tree;
   scene.erase("case");
-  return node_text(scene) + "\n";
+  std::ostringstream text;
+  text << scene << "\n";
+  return text.str();
 }
 
 std::string node_text(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) return fmt::format("{:#}", number->get());
+  if (const toml::array* array = node.as_array()) {
+    std::string entries;
+    for (const toml::node& entry : *array) entries += (entries.empty() ? "" : ", ") + node_text(entry);
+    return "[" + entries + "]";
+  }
   std::ostringstream text;
   node.visit([&](const auto& value) { text << value; });
   return text.str();

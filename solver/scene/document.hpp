@@ -15,7 +15,7 @@ toml::table parse_document(const std::string& text, const std::string& file, con
 /// The tree as TOML with sorted keys, without the table [case].
 std::string canonical_text(const toml::table& tree);
 
-/// A node as it would be written.
+/// A node for a message; numbers in as few digits as tell them apart.
 std::string node_text(const toml::node& node);
 
 /// The name among `known` that differs from `word` in the fewest letters; empty if none is alike.

@@ -77,9 +77,9 @@ void check_solids(const Scene& scene, const Model<D>& model) {
     const BodyScene& body = scene.bodies[i];
     if (is_wall(body)) {
       if (scene.fluid.particles && body.thickness < scene.fluid.cutoff)
-        throw InputError(scene.file, body.key + ".thickness", fmt::format("{}", body.thickness),
-                         fmt::format("the fluid sees through a wall thinner than rcut = {}; make it thicker",
-                                     scene.fluid.cutoff));
+        throw InputError(
+            scene.file, body.key + ".thickness", fmt::format("{}", body.thickness),
+            fmt::format("the fluid sees through a wall thinner than rcut = {}; make it thicker", scene.fluid.cutoff));
       continue;
     }
     const double width = 2.0 * model.shapes[i].reach * scene.fluid.cutoff;
@@ -117,11 +117,11 @@ std::vector<std::string> scene_warnings(const Scene& scene, const Model<D>& mode
   std::vector<std::string> lines;
   const double step = model.dt * model.units.time();
   if (step > (1.0 + 1e-9) * limits.smallest())
-    lines.push_back(fmt::format("{} = {}: the step {:.6g} is beyond its limit {}: results may be wrong without any sign",
-                                step_key(scene), declared_step(scene), step, step_text(limits)));
-  const bool meeting = std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const BodyScene& body) {
-                         return body.motion == Motion::free;
-                       }) > 0 &&
+    lines.push_back(
+        fmt::format("{} = {}: the step {:.6g} is beyond its limit {}: results may be wrong without any sign",
+                    step_key(scene), declared_step(scene), step, step_text(limits)));
+  const bool meeting = std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                                     [](const BodyScene& body) { return body.motion == Motion::free; }) > 0 &&
                        (scene.bodies.size() > 1 || scene.bodies[0].positions.size() > 1);
   if (meeting && !model.terms.contact)
     lines.push_back("[contact] is missing: solids that meet pass through each other");
@@ -133,9 +133,10 @@ std::vector<std::string> scene_warnings(const Scene& scene, const Model<D>& mode
                                 most_support));
   const double speed = std::max(largest_declared_speed(scene), scene.fluid.sound_speed.velocity);
   if (speed > largest_mach * model.units.velocity)
-    lines.push_back(fmt::format("fluid.sound_speed: {:.6g} is less than ten times the speed {:.6g}: the fluid is "
-                                "compressible",
-                                model.units.velocity, speed));
+    lines.push_back(
+        fmt::format("fluid.sound_speed: {:.6g} is less than ten times the speed {:.6g}: the fluid is "
+                    "compressible",
+                    model.units.velocity, speed));
   if (scene.fluid.background_pressure > 0.0)
     lines.push_back(fmt::format("fluid.background_pressure = {}: stiffens the particle lattice; drags are too large",
                                 scene.fluid.background_pressure));
@@ -146,20 +147,19 @@ std::vector<std::string> scene_warnings(const Scene& scene, const Model<D>& mode
                                     ball.radius / scene.fluid.spacing, least_radius));
     const double cell = lattice.spacing[body.axis] * scene.fluid.cutoff;
     if (is_wall(body) && !(is_whole(body.position / cell) && is_whole(body.thickness / cell)))
-      lines.push_back(fmt::format("{}: position and thickness are not whole multiples of the lattice spacing {:.6g}: "
-                                  "the fluid starts with an uneven row",
-                                  body.key, cell));
+      lines.push_back(
+          fmt::format("{}: position and thickness are not whole multiples of the lattice spacing {:.6g}: "
+                      "the fluid starts with an uneven row",
+                      body.key, cell));
   }
   return lines;
 }
 
-#define MAPPM_INSTANTIATE(D)                                        \
-  template void check_box(const Scene&, const Lattice<D>&);         \
-  template void check_solids(const Scene&, const Model<D>&);        \
-  template std::vector<std::string> scene_warnings(const Scene&, const Model<D>&, const Lattice<D>&, const StepLimits&)
-
-MAPPM_INSTANTIATE(2);
-MAPPM_INSTANTIATE(3);
-#undef MAPPM_INSTANTIATE
+template void check_box(const Scene&, const Lattice<2>&);
+template void check_box(const Scene&, const Lattice<3>&);
+template void check_solids(const Scene&, const Model<2>&);
+template void check_solids(const Scene&, const Model<3>&);
+template std::vector<std::string> scene_warnings(const Scene&, const Model<2>&, const Lattice<2>&, const StepLimits&);
+template std::vector<std::string> scene_warnings(const Scene&, const Model<3>&, const Lattice<3>&, const StepLimits&);
 
 }  // namespace mappm

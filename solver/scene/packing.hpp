@@ -8,10 +8,10 @@
 namespace mappm {
 
 struct Packing {
-  std::size_t body = 0;   // index in the scene
+  std::size_t body = 0;  // index in the scene
   std::size_t count = 0;
   std::uint64_t seed = 0;
-  double gap = 0.0;       // kept between surfaces
+  double gap = 0.0;  // kept between surfaces
 };
 
 /// Radius of the ball about the origin of a body's frame that holds all its balls.

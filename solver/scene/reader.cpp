@@ -27,8 +27,7 @@ SoundSpeed read_sound_speed(const Fields& table) {
   SoundSpeed speed;
   if (table.has("sound_speed")) {
     speed.value = table.number("sound_speed", Quantity::velocity, Sign::positive);
-    if (table.has("sound_speed_factor"))
-      table.fail("sound_speed_factor", "sound_speed is given too; keep one of them");
+    if (table.has("sound_speed_factor")) table.fail("sound_speed_factor", "sound_speed is given too; keep one of them");
   } else {
     speed.factor = table.number("sound_speed_factor", Quantity::plain, Sign::positive, speed.factor);
     if (!table.has("reference_velocity"))
@@ -59,9 +58,8 @@ void read_fluid_law(const Fields& table, FluidScene& fluid) {
   fluid.kernel = table.choice<KernelKind>(
       "kernel", {{"wendland-c2", KernelKind::wendland_c2}, {"lucy", KernelKind::lucy}, {"mps", KernelKind::mps}},
       fluid.kernel);
-  fluid.no_slip =
-      table.choice<NoSlip>("no_slip", {{"plain", NoSlip::plain}, {"extrapolated", NoSlip::extrapolated}},
-                           classic ? NoSlip::plain : NoSlip::extrapolated);
+  fluid.no_slip = table.choice<NoSlip>("no_slip", {{"plain", NoSlip::plain}, {"extrapolated", NoSlip::extrapolated}},
+                                       classic ? NoSlip::plain : NoSlip::extrapolated);
   fluid.transport = table.flag("transport", !classic);
   fluid.background_pressure = table.number("background_pressure", Quantity::plain, Sign::not_negative, 0.0);
   fluid.shift_pressure = table.number("shift_pressure", Quantity::plain, Sign::positive, 1.0);

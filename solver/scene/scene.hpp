@@ -28,18 +28,18 @@ struct SoundSpeed {
 };
 
 struct FluidScene {
-  bool particles = true;       // false: solids alone; density, spacing and sound speed are then only the units
-  double density = 0.0;        // kg/m3
-  double viscosity = 0.0;      // dynamic, Pa s; in the plane all densities, masses and forces are per metre of depth
-  double spacing = 0.0;        // dx, m
-  double cutoff = 0.0;         // rcut, m; by default 3 dx
+  bool particles = true;   // false: solids alone; density, spacing and sound speed are then only the units
+  double density = 0.0;    // kg/m3
+  double viscosity = 0.0;  // dynamic, Pa s; in the plane all densities, masses and forces are per metre of depth
+  double spacing = 0.0;    // dx, m
+  double cutoff = 0.0;     // rcut, m; by default 3 dx
   SoundSpeed sound_speed;
   Method method = Method::transport;
   KernelKind kernel = KernelKind::wendland_c2;
-  NoSlip no_slip = NoSlip::extrapolated;   // default follows the method
-  bool transport = true;                   // default follows the method
-  double background_pressure = 0.0;        // p_b in units of c^2 rho0
-  double shift_pressure = 1.0;             // p_s in units of c^2 rho0
+  NoSlip no_slip = NoSlip::extrapolated;  // default follows the method
+  bool transport = true;                  // default follows the method
+  double background_pressure = 0.0;       // p_b in units of c^2 rho0
+  double shift_pressure = 1.0;            // p_s in units of c^2 rho0
   /// Initial velocity field: uniform, plus a shear wave  amplitude sin(2 pi mode x_gradient / L) along `direction`.
   Triple velocity{};
   struct Wave {
@@ -60,14 +60,14 @@ struct BallScene {
 
 struct BodyScene {
   enum class Shape { ball, composite, wall } shape = Shape::ball;  // ball: a disc in 2D, a sphere in 3D
-  std::string key;                // "body.0", for messages
-  std::vector<BallScene> balls;   // one for a disc or sphere, none for a wall
-  double density = 0.0;           // kg/m3
+  std::string key;                                                 // "body.0", for messages
+  std::vector<BallScene> balls;                                    // one for a disc or sphere, none for a wall
+  double density = 0.0;                                            // kg/m3
   Motion motion = Motion::free;
-  std::vector<Triple> positions;  // origins of the body's frame: listed singly, or from an array or a random packing
-  std::vector<Triple> velocities; // one per position
+  std::vector<Triple> positions;   // origins of the body's frame: listed singly, or from an array or a random packing
+  std::vector<Triple> velocities;  // one per position
   std::vector<Triple> angular_velocities;  // one per position; in the plane only the last entry is used
-  bool rotates = true;            // false: the orientation is held
+  bool rotates = true;                     // false: the orientation is held
   // wall: an infinite plane layer normal to `axis`, from `position` to `position + thickness`
   int axis = 1;
   double position = 0.0;
@@ -76,32 +76,32 @@ struct BodyScene {
 
 struct ContactScene {
   ContactModel model = ContactModel::none;
-  double stiffness = 0.0;      // linear: k_n, N/m
-  double young = 0.0;          // hertz: Young's modulus, Pa
-  double poisson = 0.0;        // hertz
-  double restitution = 1.0;    // e in (0, 1]
-  double friction = 0.0;       // Coulomb coefficient
+  double stiffness = 0.0;    // linear: k_n, N/m
+  double young = 0.0;        // hertz: Young's modulus, Pa
+  double poisson = 0.0;      // hertz
+  double restitution = 1.0;  // e in (0, 1]
+  double friction = 0.0;     // Coulomb coefficient
 };
 
 struct ForceScene {
-  Triple fluid{};              // acceleration of the PPs, m/s^2
-  Triple solid{};              // acceleration of the free SPs, m/s^2
-  bool balance = false;        // solid = "balance": opposes the force on the fluid, total force zero
+  Triple fluid{};        // acceleration of the PPs, m/s^2
+  Triple solid{};        // acceleration of the free SPs, m/s^2
+  bool balance = false;  // solid = "balance": opposes the force on the fluid, total force zero
 };
 
 struct RunScene {
-  double step = 0.0;                // s; 0: step_factor times the limit
-  double step_factor = 1.0;         // fraction of the step limit
-  std::uint64_t steps = 0;          // after the relaxation; 0: worked out from the duration
-  double duration = 0.0;            // s, after the relaxation; 0: given in steps
-  std::uint64_t relax = 0;          // steps before the body forces act (they are counted in the step number)
+  double step = 0.0;         // s; 0: step_factor times the limit
+  double step_factor = 1.0;  // fraction of the step limit
+  std::uint64_t steps = 0;   // after the relaxation; 0: given as a duration
+  double duration = 0.0;     // s, after the relaxation; 0: given in steps
+  std::uint64_t relax = 0;   // steps before the body forces act (they are counted in the step number)
 };
 
 struct OutputScene {
-  std::uint64_t sample = 100;       // steps between rows of series.csv and digests
-  std::uint64_t snapshot = 0;       // steps between snapshots; 0: none but the last
-  std::uint64_t checkpoint = 0;     // steps between checkpoints; 0: only on a signal
-  bool solids = false;              // solids.csv: one row per SP and sample
+  std::uint64_t sample = 100;    // steps between rows of series.csv and digests
+  std::uint64_t snapshot = 0;    // steps between snapshots; 0: none but the last
+  std::uint64_t checkpoint = 0;  // steps between checkpoints; 0: only on a signal
+  bool solids = false;           // solids.csv: one row per SP and sample
 };
 
 struct Scene {
@@ -112,7 +112,7 @@ struct Scene {
   std::string text;
   int dimension = 2;
   Units units = Units::si;
-  Triple box{};                     // sides, m
+  Triple box{};  // sides, m
   FluidScene fluid;
   std::vector<BodyScene> bodies;
   ContactScene contact;

@@ -135,8 +135,8 @@ std::vector<PlacedSolid<D>> place_solids(const Scene& scene, const Model<D>& mod
     const BodyScene& body = scene.bodies[index];
     if (is_wall(body)) place_wall(scene, index, lattice, group++, solids);
     for (std::size_t member = 0; member < body.positions.size(); ++member)
-      solids.push_back({static_cast<std::uint32_t>(index), group++, member,
-                        centre_of_mass(scene, body, member, model)});
+      solids.push_back(
+          {static_cast<std::uint32_t>(index), group++, member, centre_of_mass(scene, body, member, model)});
   }
   return solids;
 }
@@ -161,13 +161,11 @@ std::vector<WallFace<D>> wall_faces(const Scene& scene, const Model<D>& model) {
   return faces;
 }
 
-#define MAPPM_INSTANTIATE(D)                                                                           \
-  template std::vector<Shape<D>> make_shapes(const Scene&, const Model<D>&, const Lattice<D>&);        \
-  template std::vector<PlacedSolid<D>> place_solids(const Scene&, const Model<D>&, const Lattice<D>&); \
-  template std::vector<WallFace<D>> wall_faces(const Scene&, const Model<D>&)
-
-MAPPM_INSTANTIATE(2);
-MAPPM_INSTANTIATE(3);
-#undef MAPPM_INSTANTIATE
+template std::vector<Shape<2>> make_shapes(const Scene&, const Model<2>&, const Lattice<2>&);
+template std::vector<Shape<3>> make_shapes(const Scene&, const Model<3>&, const Lattice<3>&);
+template std::vector<PlacedSolid<2>> place_solids(const Scene&, const Model<2>&, const Lattice<2>&);
+template std::vector<PlacedSolid<3>> place_solids(const Scene&, const Model<3>&, const Lattice<3>&);
+template std::vector<WallFace<2>> wall_faces(const Scene&, const Model<2>&);
+template std::vector<WallFace<3>> wall_faces(const Scene&, const Model<3>&);
 
 }  // namespace mappm

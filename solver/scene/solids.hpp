@@ -15,8 +15,8 @@ template <int D>
 struct PlacedSolid {
   std::uint32_t shape = 0;  // also the index of its body in the scene
   std::uint32_t group = 0;
-  std::size_t member = 0;   // index into the body's velocities
-  Vec<D, double> x;         // centre of mass, position quanta
+  std::size_t member = 0;  // index into the body's velocities
+  Vec<D, double> x;        // centre of mass, position quanta
 };
 
 /// One shape per body of the scene. Of `model` it reads box, kernel, rest_density and spacing. Throws InputError if a

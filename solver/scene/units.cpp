@@ -76,10 +76,9 @@ double value_in_si(std::string_view text, Quantity quantity) {
   if (quantity == Quantity::plain) throw std::invalid_argument("has no unit; write the number without quotes");
   for (const Unit& unit : units)
     if (unit.quantity == quantity && unit.name == name) return value * unit.times / unit.over;
-  throw std::invalid_argument(
-      fmt::format("{}; units of this key: {}",
-                  name.empty() ? "lacks a unit" : fmt::format("\"{}\" is not a unit of this key", name),
-                  known_units(quantity)));
+  throw std::invalid_argument(fmt::format(
+      "{}; units of this key: {}",
+      name.empty() ? "lacks a unit" : fmt::format("\"{}\" is not a unit of this key", name), known_units(quantity)));
 }
 
 }  // namespace mappm

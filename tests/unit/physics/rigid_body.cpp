@@ -68,6 +68,7 @@ TEST(Place, by_hand_in_the_plane) {
   EXPECT_EQ(placed.x, (Vec<2, double>{{box_quanta - 1.0 + box_quanta / 16.0, 100.0 + box_quanta / 16.0}}));
   EXPECT_EQ(placed.v, (Vec<2, double>{{1.0 - 2.0, 2.0 + 1.0}}));
   EXPECT_EQ(placed.normal, (Vec<2, double>{{1.0, 0.0}}));
+  EXPECT_EQ(placed.lever, (Vec<2, double>{{0.25, 0.5}}));
 }
 
 TEST(Place, differs_between_frames_by_whole_boxes_only) {

@@ -120,6 +120,29 @@ TEST(MakeBody, equal_halves_do_not_stand_twice_in_the_seam) {
       EXPECT_GT(length_of(shape.frozen[a].offset - shape.frozen[b].offset), 1e-6);
 }
 
+TEST(MakeBody, ring_points_in_the_seam_itself_stand_once) {
+  // The outer ring of R = 2.4 dx has 12 FPs, and that at 60 degrees lies half its radius of 1.9 dx out: in the seam.
+  const double radius = 2.4 * dx, half = 0.95 * dx;
+  const auto shape =
+      make_body<2, WendlandC2>({{{{-half, 0.0}}, radius, radius}, {{{half, 0.0}}, radius, radius}}, 20.0, plane_layer);
+  int in_seam = 0;
+  for (const auto& point : shape.frozen)
+    if (std::fabs(point.offset[0]) < 1e-9 && point.depth < dx) ++in_seam;
+  EXPECT_EQ(in_seam, 2);  // one above, one below
+}
+
+TEST(MakeBody, rings_stand_with_a_gap_behind_an_fp) {
+  const auto shape = make_body<2, WendlandC2>({{{}, 2.5, 2.5}}, 30.0, plane_layer);
+  std::vector<double> first_angle;
+  for (const auto& point : shape.frozen)
+    if (first_angle.size() == static_cast<std::size_t>(point.depth / dx))
+      first_angle.push_back(std::atan2(point.normal[1], point.normal[0]));
+  ASSERT_EQ(first_angle.size(), 3u);
+  EXPECT_EQ(first_angle[0], 0.0);
+  EXPECT_NEAR(first_angle[1], pi / 41.0, 1e-15);  // half of a step: 2 pi 6.5 = 40.8 FPs
+  EXPECT_EQ(first_angle[2], 0.0);
+}
+
 /// Density that an FP sees: its own body as a continuum, and a fine lattice of fluid outside.
 template <int D, class Kernel>
 double density_in_surroundings(const Shape<D>& shape, const FrozenParticle<D>& point, double number_density) {
@@ -224,6 +247,16 @@ TEST(MakeWallPiece, thin_wall_has_one_middle_sheet_and_sees_both_faces) {
     EXPECT_NEAR(std::fabs(z), std::fabs(z) < 0.1 ? 0.0 : dx, 1e-14);
     EXPECT_LT(point.own_density, 0.95 * space_layer.number_density);  // fluid on both sides is within reach
   }
+}
+
+TEST(MakeWallPiece, wall_of_two_sheets_has_one_to_each_face) {
+  const auto shape = make_wall_piece<2, WendlandC2>(0, {2 * dx, dx}, {dx, dx}, plane_layer);
+  ASSERT_EQ(shape.frozen.size(), 2u);
+  for (const auto& point : shape.frozen) {
+    EXPECT_EQ(point.depth, 0.5 * dx);
+    EXPECT_EQ(point.normal, (Vec<2, double>{{point.offset[0] < 0.0 ? -1.0 : 1.0, 0.0}}));
+  }
+  EXPECT_EQ(shape.frozen[0].own_density, shape.frozen[1].own_density);
 }
 
 TEST(MakeWallPiece, spacing_is_fitted_to_the_sides) {

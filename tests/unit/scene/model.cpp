@@ -1,0 +1,236 @@
+// The built model. Numbers of `one_disc` are worked by hand: rcut 0.5 = 4 spacings, c = 10, a lattice of 16 x 32 nodes,
+// so a PP has mass 3 / 64, time is counted in rcut / c = 0.05, rho0 = 16 PPs per rcut^2.
+#include <cmath>
+
+#include "scene/scene_setup.hpp"
+
+namespace mappm::test {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+Model<2> one_disc_model(const Overrides& overrides = {}) { return make_model<2>(read(one_disc, overrides)).model; }
+
+TEST(SceneModel, UnitsAndBox) {
+  const Model<2> model = one_disc_model();
+  EXPECT_EQ(model.units.length, 0.5);
+  EXPECT_EQ(model.units.velocity, 10.0);
+  EXPECT_EQ(model.units.mass, 3.0 / 64.0);
+  EXPECT_EQ(model.box, (Vec<2, double>{{4.0, 8.0}}));
+  EXPECT_EQ(model.pair.length, (Vec<2, double>{{0x1p-50, 0x1p-49}}));
+  EXPECT_EQ(model.rest_density, 16.0);
+  EXPECT_EQ(model.spacing, 0.25);
+  EXPECT_EQ(model.no_slip_nearest, 0.0625);
+}
+
+TEST(SceneModel, StepIsTheSmallestLimit) {
+  // acoustic 0.25 h/c = 0.00625, viscous 0.125 h^2/nu = 0.039, force 0.25 sqrt(h/g) = 0.088, with h = 0.25, nu = 0.2
+  EXPECT_DOUBLE_EQ(one_disc_model().dt, 0.125);
+  EXPECT_DOUBLE_EQ(one_disc_model({"run.step_factor=0.5"}).dt, 0.0625);
+  EXPECT_DOUBLE_EQ(one_disc_model({"fluid.viscosity=60.0"}).dt, 0.00390625 * 2);  // viscous: 0.000390625 = 1/128 / 20
+  EXPECT_DOUBLE_EQ(one_disc_model({"force.fluid=[0.0, 2500.0]"}).dt, 0.05);       // 0.25 sqrt(1e-4)
+}
+
+TEST(SceneModel, PairLawConstants) {
+  const Model<2> model = one_disc_model();
+  // mu = nu rho0 with nu = 0.2 / (0.5 * 10)
+  EXPECT_DOUBLE_EQ(model.pair.viscosity, 0.04 * 16.0);
+  // (dt / 2) p_s iota / length = 0.0625 * 16 * 2^-48 * 2^50
+  EXPECT_DOUBLE_EQ(model.pair.shift[0], 4.0);
+  EXPECT_DOUBLE_EQ(model.pair.shift[1], 2.0);
+  EXPECT_DOUBLE_EQ(one_disc_model({"fluid.shift_pressure=0.5"}).pair.shift[0], 2.0);
+  EXPECT_EQ(model.background, 0.0);
+  EXPECT_DOUBLE_EQ(one_disc_model({"fluid.background_pressure=0.25"}).background, 4.0);
+}
+
+/// Sums over the lattice with the folded constants: sum W = rho0, (1/D) sum V r^2 G = 1.
+TEST(SceneModel, KernelSumsAreExactOnTheLattice) {
+  const Model<2> model = one_disc_model();
+  double weight = model.self_density;
+  double moment = 0.0;
+  for (int j = -4; j <= 4; ++j)
+    for (int i = -4; i <= 4; ++i) {
+      const double q = std::sqrt(0.0625 * (i * i + j * j));
+      if (q >= 1.0 || (i == 0 && j == 0)) continue;
+      const auto profile = WendlandC2::at<double>(q);
+      weight += profile.weight * model.pair.weight * density_quantum;
+      moment += q * q * profile.gradient * model.pair.force * velocity_quantum / model.dt;
+    }
+  EXPECT_NEAR(weight, 16.0, 1e-12);  // rounding of 49 terms
+  EXPECT_NEAR(0.5 * moment / 16.0, 1.0, 1e-13);
+  EXPECT_EQ(model.self_density, std::nearbyint(model.self_density / density_quantum) * density_quantum);
+  EXPECT_DOUBLE_EQ(model.pair.rate, model.pair.weight * model.dt);
+}
+
+TEST(SceneModel, ForcesAreQuantised) {
+  const Model<2> model = one_disc_model();
+  // g L / c^2 = 0.01; times dt = 0.00125, to the nearest 2^-48
+  EXPECT_EQ(model.fluid_kick[0], 0.0);
+  EXPECT_NEAR(model.fluid_kick[1], 0.00125, 0x1p-49);
+  EXPECT_EQ(model.fluid_kick[1] / velocity_quantum, std::nearbyint(model.fluid_kick[1] / velocity_quantum));
+  EXPECT_EQ(model.solid_acceleration, (Vec<2, double>{}));
+  EXPECT_DOUBLE_EQ(one_disc_model({"force.solid=[4.0, 0.0]"}).solid_acceleration[0], 0.02);
+}
+
+TEST(SceneModel, BalanceOpposesTheForceOnTheFluid) {
+  const BuiltModel<2> built = make_model<2>(read(one_disc, {"force.solid=balance"}));
+  const Model<2>& model = built.model;
+  const double on_fluid = static_cast<double>(built.fluid_particles) * model.fluid_kick[1];
+  EXPECT_NEAR(model.solid_acceleration[1] * model.shapes[0].mass * model.dt, -on_fluid, 1e-15 * on_fluid);
+  expect_input_error(
+      [] {
+        make_model<2>(read(plain_fluid, {"force.fluid=[1.0, 0.0]", "force.solid=balance"}));
+      },
+      {"force.solid = \"balance\"", "free solid"});
+}
+
+TEST(SceneModel, ShapesInInternalUnits) {
+  const Model<2> model = one_disc_model();
+  ASSERT_EQ(model.shapes.size(), 1u);
+  EXPECT_DOUBLE_EQ(model.shapes[0].volume, pi);       // R = rcut
+  EXPECT_DOUBLE_EQ(model.shapes[0].mass, 32.0 * pi);  // twice the fluid's density
+  EXPECT_EQ(model.largest_reach, 1.0);
+  EXPECT_EQ(model.largest_contact_reach, 0.0);  // no contact declared
+}
+
+TEST(SceneModel, CountsThePseudoParticles) {
+  // 512 nodes, less pi 0.25 / (1/64) = 50.27
+  EXPECT_EQ(make_model<2>(read(one_disc)).fluid_particles, 462u);
+  EXPECT_EQ(make_model<2>(read(plain_fluid)).fluid_particles, 256u);
+}
+
+TEST(SceneModel, SoundSpeedRule) {
+  const auto speed = [](const Overrides& more) {
+    Overrides overrides{"fluid.sound_speed_factor=10"};
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    return make_model<2>(read(one_disc, overrides)).model.units.velocity;
+  };
+  // nu = 0.2, R = 0.5, L = 2R = 1, g = 2
+  EXPECT_DOUBLE_EQ(speed({"fluid.reference_velocity=3.0"}), 30.0);                   // U
+  EXPECT_DOUBLE_EQ(speed({"fluid.reference_velocity=0.1"}), 10.0 * std::sqrt(2.0));  // g L
+  EXPECT_DOUBLE_EQ(speed({"fluid.reference_velocity=6.0", "fluid.viscosity=60.0"}),
+                   10.0 * std::sqrt(240.0));  // nu U / R
+  expect_input_error(
+      [] {
+        make_model<2>(read(plain_fluid, {"fluid.sound_speed_factor=10", "fluid.reference_velocity=0"}));
+      },
+      {"fluid.reference_velocity = 0", "largest speed expected"});
+}
+
+TEST(SceneModel, TermsFollowFromTheScene) {
+  const Terms plain = make_model<2>(read(plain_fluid)).model.terms;
+  EXPECT_TRUE(plain.fluid && plain.transport);
+  EXPECT_FALSE(plain.extrapolated || plain.body_force || plain.solids || plain.motion || plain.rotation ||
+               plain.contact);
+  const Terms disc = one_disc_model().terms;
+  EXPECT_TRUE(disc.extrapolated && disc.body_force && disc.solids && disc.motion && disc.rotation);
+  EXPECT_FALSE(disc.contact);
+  const Overrides linear{"contact.model=linear", "contact.stiffness=1e6"};
+  EXPECT_FALSE(one_disc_model(linear).terms.contact) << "one disc has nothing to touch";
+  Overrides two = linear;
+  two.push_back("body.0.position=[1.0, 1.0]");
+  const std::string second = "[[body]]\nshape = \"disc\"\nradius = 0.4\ndensity = 6.0\nposition = [1.0, 3.0]\n";
+  const Model<2> model = make_model<2>(read(one_disc + second, two)).model;
+  EXPECT_TRUE(model.terms.contact);
+  EXPECT_EQ(model.largest_contact_reach, 1.0);
+  // k / (m c^2 / rcut^2) = 1e6 / (3/64 * 400)
+  EXPECT_DOUBLE_EQ(model.contact.stiffness, 1e6 / 18.75);
+}
+
+TEST(SceneModel, ContactLimitsTheStep) {
+  const std::string second = "[[body]]\nshape = \"disc\"\nradius = 0.5\ndensity = 6.0\nposition = [1.0, 3.0]\n";
+  const Model<2> model =
+      make_model<2>(read(one_disc + second, {"contact.model=linear", "contact.stiffness=1e6"})).model;
+  // 0.05 pi sqrt(m / 2 / k), m = 6 pi / 4, in units of 0.05
+  EXPECT_NEAR(model.dt, pi * std::sqrt(0.75 * pi / 1e6), 1e-12);
+}
+
+TEST(SceneModel, StepBeyondItsLimitWarnsAndThenFails) {
+  EXPECT_TRUE(make_model<2>(read(one_disc, {"run.step=0.006"})).warnings.empty());
+  const std::vector<std::string> warnings = make_model<2>(read(one_disc, {"run.step=0.012"})).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("run.step = 0.012: the step 0.012 is beyond its limit 0.00625 (of sound)"),
+            std::string::npos)
+      << warnings[0];
+  expect_input_error([] { make_model<2>(read(one_disc, {"run.step=0.013"})); },
+                     {"scene.toml", "run.step = 0.013", "more than 2 times its limit 0.00625", "lower it"});
+  expect_input_error([] { make_model<2>(read(one_disc, {"run.step_factor=2.5"})); },
+                     {"run.step_factor = 2.5", "lower it"});
+}
+
+TEST(SceneModel, RefusesWhatCannotRun) {
+  const auto built = [](const Overrides& overrides) { return [=] { make_model<2>(read(one_disc, overrides)); }; };
+  expect_input_error(built({"fluid.rcut=1.0"}), {"box.size = 2", "longer than 2 rcut = 2"});
+  expect_input_error(built({"fluid.rcut=0.1"}), {"fluid.rcut = 0.1", "exceed fluid.spacing = 0.125"});
+  expect_input_error(built({"fluid.spacing=0.01"}), {"fluid.rcut = 0.5", "more than 256"});
+  expect_input_error(built({"body.0.radius=1.1"}), {"body.0", "2.2 wide", "box side 2"});
+  expect_input_error(built({"fluid.sound_speed=0.4"}), {"fluid.sound_speed = 0.4", "speed 0.5"});
+  expect_input_error(
+      [] {
+        make_model<2>(read(one_disc + "[[body]]\nshape = \"disc\"\nradius = 0.5\ndensity = 6.0\n"
+                                      "position = [1.5, 1.0]\n"));
+      },
+      {"body.1", "overlaps", "body.0"});
+  const std::string wall =
+      plain_fluid + "[[body]]\nshape = \"wall\"\naxis = \"y\"\nposition = 0.5\nthickness = 0.125\n";
+  expect_input_error([&] { make_model<2>(read(wall)); }, {"body.0.thickness = 0.125", "thicker"});
+}
+
+TEST(SceneModel, WarnsOutsideTheMappedRegion) {
+  const auto warning = [](const Overrides& overrides) {
+    std::string all;
+    for (const std::string& line : make_model<2>(read(one_disc, overrides)).warnings) all += line + "\n";
+    return all;
+  };
+  EXPECT_EQ(warning({}), "");
+  EXPECT_NE(warning({"fluid.sound_speed=20.0", "fluid.reference_velocity=3"}).find("fluid.sound_speed"),
+            std::string::npos);
+  EXPECT_NE(warning({"fluid.rcut=0.25"}).find("fluid.rcut: 2 spacings"), std::string::npos);
+  EXPECT_NE(warning({"body.0.radius=0.4"}).find("body.0.radius: 3.2 spacings"), std::string::npos);
+  EXPECT_NE(warning({"fluid.background_pressure=1.0"}).find("fluid.background_pressure = 1"), std::string::npos);
+}
+
+TEST(SceneModel, ASceneWithoutParticlesHasNoFrozenOnesEither) {
+  const std::string text = R"(
+name = "two spheres"
+units = "dimensionless"
+[box]
+size = [10.0, 10.0, 10.0]
+[fluid]
+particles = false
+density = 1.0
+spacing = 0.3333333333333333
+sound_speed = 100.0
+[[body]]
+shape = "sphere"
+radius = 1.0
+density = 1.0
+positions = [[3.0, 5.0, 5.0], [6.0, 5.0, 5.0]]
+[contact]
+model = "hertz"
+young = 1e6
+poisson = 0.25
+[run]
+steps = 10
+)";
+  const Scene scene = read(text);
+  const BuiltModel<3> built = make_model<3>(scene);
+  EXPECT_FALSE(built.model.terms.fluid || built.model.terms.transport || built.model.terms.extrapolated);
+  EXPECT_TRUE(built.model.terms.contact);
+  EXPECT_TRUE(built.model.shapes[0].frozen.empty());
+  EXPECT_EQ(built.fluid_particles, 0u);
+  EXPECT_TRUE(built.warnings.empty());
+  const State<3> state = build_state(scene, built.model, Region<3>::whole_box());
+  EXPECT_EQ(state.fluid.size(), 0u);
+  EXPECT_EQ(state.solids.size(), 2u);
+  // E / (m c^2 / rcut^3) with m / rcut^3 = density / 27 for rcut = 3 spacings
+  EXPECT_NEAR(built.model.contact.young, 1e6 * 27.0 / 1e4, 1e-8);
+  expect_input_error(
+      [&] {
+        make_model<3>(read(text, {"contact.model=none", "contact={model=\"none\"}"}));
+      },
+      {"run.step", "nothing in this scene limits the step"});
+}
+
+}  // namespace
+}  // namespace mappm::test
