@@ -149,10 +149,10 @@ void RunLoop<D, E>::begin() {
   remember(measure(model, engine_.state(), group));
   write_record("running", "");
   say_on_first([&] {
-    for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
-    if (!options.quiet)
-      fmt::print("{}: steps {} to {}, {} particles, terms: {}; output in {}\n", scene.name, first_step_, last_step_,
-                 record_.particles, fmt::join(term_names(model.terms), ", "), folder_.string());
+    for (const std::string& warning : setup_.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    if (!setup_.options.quiet)
+      fmt::print("{}: steps {} to {}, {} particles, terms: {}; output in {}\n", record_.scene_name, first_step_,
+                 last_step_, record_.particles, fmt::join(term_names(record_.terms), ", "), folder_.string());
     std::fflush(stdout);
   });
   const ProgressStyle style = group.is_first() ? progress_style(options.quiet) : ProgressStyle::silent;

@@ -1,7 +1,7 @@
 // Every declared case can be read and built, and lies inside the mapped region.
 #include <filesystem>
 
-#include "scene/scene_setup.hpp"
+#include "unit/scene/scene_setup.hpp"
 
 namespace mappm::test {
 namespace {

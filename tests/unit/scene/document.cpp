@@ -1,5 +1,5 @@
 // Overrides and the canonical text, seen through the reader.
-#include "scene/scene_setup.hpp"
+#include "unit/scene/scene_setup.hpp"
 
 namespace mappm::test {
 namespace {

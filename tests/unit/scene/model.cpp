@@ -2,7 +2,7 @@
 // so a PP has mass 3 / 64, time is counted in rcut / c = 0.05, rho0 = 16 PPs per rcut^2.
 #include <cmath>
 
-#include "scene/scene_setup.hpp"
+#include "unit/scene/scene_setup.hpp"
 
 namespace mappm::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "scene/obstacles.hpp"
-#include "scene/scene_setup.hpp"
+#include "unit/scene/scene_setup.hpp"
 
 namespace mappm::test {
 namespace {

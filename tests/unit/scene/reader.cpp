@@ -1,5 +1,5 @@
 // The typed reader: what it makes of good scenes, and its error for each kind of bad input.
-#include "scene/scene_setup.hpp"
+#include "unit/scene/scene_setup.hpp"
 
 namespace mappm::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <map>
 #include <set>
 
-#include "scene/scene_setup.hpp"
+#include "unit/scene/scene_setup.hpp"
 
 namespace mappm::test {
 namespace {

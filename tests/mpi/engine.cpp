@@ -1,0 +1,173 @@
+// Oracle: the serial engine. Digests must be equal to the last bit, whatever the domains, the threads and the borders.
+#include "parallel/engine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "mpi/grids.hpp"
+#include "mpi/world.hpp"
+#include "serial/engine.hpp"
+#include "unit/serial/scenes.hpp"
+
+namespace mappm {
+namespace {
+
+using testing::Built;
+using testing::total;
+using testing::world;
+
+constexpr int every = 10;
+
+/// What a run saw of the scene's life, so that a scene in which nothing happens is noticed.
+struct Events {
+  std::size_t contacts = 0, changes_of_owner = 0;
+  bool turned = false;
+};
+
+template <int D>
+struct Reference {
+  std::vector<std::uint64_t> digests;  // at step 0, 10, 20 ...
+  Events events;
+};
+
+/// Digests of the serial engine, computed by the first process for all.
+template <int D>
+Reference<D> run_serial(const Built<D>& built, int steps) {
+  Reference<D> reference;
+  if (world().is_first()) {
+    SerialEngine<D> engine(built.model, built.state(), Neighbours::cells);
+    // Which quarter of the box along x and y each solid is in: crossing from one to another crosses some grid's border.
+    std::map<std::uint64_t, std::pair<double, double>> quarter;
+    const auto look = [&] {
+      for (const Solid<D>& solid : engine.state().solids) {
+        const std::pair now{std::floor(4.0 * solid.x[0] / box_quanta), std::floor(4.0 * solid.x[1] / box_quanta)};
+        const auto [before, added] = quarter.try_emplace(solid.id, now);
+        if (!added && before->second != now) ++reference.events.changes_of_owner;
+        before->second = now;
+        reference.events.contacts += solid.contacts.size();
+        reference.events.turned =
+            reference.events.turned || (solid.motion == SolidMotion::free && solid.orientation.component[0] < 0.999);
+      }
+      reference.digests.push_back(digest_share(engine.state()));
+    };
+    look();
+    for (int step = 1; step <= steps; ++step) {
+      engine.step();
+      if (step % every == 0) look();
+    }
+    EXPECT_EQ(engine.range_error(), "");
+  }
+  std::vector<std::uint64_t> shared(static_cast<std::size_t>(steps / every) + 1, 0);
+  std::copy(reference.digests.begin(), reference.digests.end(), shared.begin());
+  world().sum(std::span(shared));
+  reference.digests = shared;
+  return reference;
+}
+
+/// The total momentum must be its start plus the impulse from outside at every sample, exactly.
+template <int D>
+void expect_ledger(State<D>& state, const Vec<D, Int128>& start) {
+  Vec<D, Int128> error = momentum_share(state) - state.outside_impulse;
+  world().sum(std::span<Int128>(error.component));
+  EXPECT_TRUE(error == start) << "step " << state.step;
+}
+
+template <int D>
+void expect_digests(const Built<D>& built, const Domains<D>& domains, const ParallelOptions& options,
+                    const std::vector<std::uint64_t>& digests) {
+  State<D> share = built.state(domains.region(world().rank()));
+  Vec<D, Int128> start = momentum_share(share);
+  world().sum(std::span<Int128>(start.component));
+  share.start_momentum = start;
+  ParallelEngine<D> engine(built.model, domains, world(), std::move(share), options);
+  for (std::size_t n = 0; n < digests.size(); ++n) {
+    const std::uint64_t digest = total(digest_share(engine.state()));
+    EXPECT_EQ(digest, digests[n]) << "step " << n * every;
+    if (digest != digests[n]) break;  // on all processes alike
+    expect_ledger(engine.state(), start);
+    for (int step = 0; step < every && n + 1 < digests.size(); ++step) engine.step();
+  }
+  EXPECT_EQ(engine.range_error(), "");
+}
+
+/// All grids that this number of processes allows, over all steps; on the last of them also two threads, and borders
+/// that follow the load.
+template <int D>
+void expect_bits_of_the_serial_engine(const std::string& scene, int steps) {
+  const Built<D> built(scene);
+  const Reference<D> reference = run_serial(built, steps);
+  if (world().is_first()) {
+    EXPECT_GT(reference.events.contacts, 10u);
+    EXPECT_GT(reference.events.changes_of_owner, 3u);
+    EXPECT_TRUE(reference.events.turned);
+    EXPECT_EQ(std::set(reference.digests.begin(), reference.digests.end()).size(), reference.digests.size());
+  }
+  const std::vector<std::string> grids = testing::all_grids<D>(world().size());
+  for (const std::string& grid : grids) {
+    SCOPED_TRACE(grid);
+    expect_digests(built, make_domains<D>(built.model, world().size(), grid), {}, reference.digests);
+  }
+  const std::string grid = grids[grids.size() / 2];
+  SCOPED_TRACE(grid);
+  const Domains<D> domains = make_domains<D>(built.model, world().size(), grid);
+  {
+    SCOPED_TRACE("2 threads");
+    const std::vector<std::uint64_t> first(reference.digests.begin(), reference.digests.begin() + 6);
+    expect_digests(built, domains, {.threads = 2}, first);
+  }
+  if (world().size() > 1) {
+    SCOPED_TRACE("borders that move every 20 steps");
+    expect_digests(built, testing::uneven(built.model, domains), {.threads = 1, .rebalance = 20}, reference.digests);
+  }
+}
+
+TEST(ParallelEngine, equals_the_serial_one_with_dense_turning_discs_that_touch_and_cross_borders) {
+  expect_bits_of_the_serial_engine<2>(testing::dense_discs(), 200);
+}
+
+TEST(ParallelEngine, equals_the_serial_one_with_solids_of_1_to_10_in_size) {
+  expect_bits_of_the_serial_engine<2>(testing::one_to_ten(), 200);
+}
+
+TEST(ParallelEngine, equals_the_serial_one_with_walls_and_fixed_solids) {
+  expect_bits_of_the_serial_engine<2>(testing::channel(), 200);
+}
+
+TEST(ParallelEngine, equals_the_serial_one_in_space) { expect_bits_of_the_serial_engine<3>(testing::spheres(), 200); }
+
+TEST(ParallelEngine, equals_the_serial_one_with_solids_alone) {
+  std::string scene = testing::spheres();
+  scene.replace(scene.find("viscosity = 0.5\n"), 16, "particles = false\n");
+  scene.replace(scene.find("fluid = [0.0, 0.0, 0.0005]\nsolid = \"balance\""), 43, "solid = [0.0, 0.0, 0.0005]");
+  scene.replace(scene.find("steps = 100\n"), 12, "steps = 100\nstep = 0.125\n");
+  expect_bits_of_the_serial_engine<3>(scene, 200);
+}
+
+TEST(ParallelEngine, reports_a_value_out_of_range_and_goes_on) {
+  const Built<2> built(testing::head("[12.0, 10.8]", "0.3", "11.1111111111"));
+  const Domains<2> domains = make_domains<2>(built.model, world().size(), "");
+  State<2> state = built.state(domains.region(world().rank()));
+  if (world().is_first()) state.fluid.v(0)[0] = 3.0;
+  ParallelEngine<2> engine(built.model, domains, world(), std::move(state), {});
+  engine.step();
+  const bool reported = engine.range_error().find("step 0: particle 0: moves more than rcut/4") != std::string::npos;
+  EXPECT_EQ(total(reported ? 1 : 0), 1u);
+}
+
+TEST(ParallelEngine, tells_where_its_time_went) {
+  const Built<2> built(testing::dense_discs());
+  const Domains<2> domains = make_domains<2>(built.model, world().size(), "");
+  ParallelEngine<2> engine(built.model, domains, world(), built.state(domains.region(world().rank())), {});
+  engine.step();
+  std::set<std::string> phases;
+  for (const auto& [name, seconds] : engine.phase_seconds()) {
+    phases.insert(name);
+    EXPECT_GT(seconds, 0.0) << name;
+  }
+  EXPECT_EQ(phases, (std::set<std::string>{"exchange", "sort", "pairs", "solids", "integrate"}));
+}
+
+}  // namespace
+}  // namespace mappm

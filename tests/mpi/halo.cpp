@@ -1,0 +1,269 @@
+// Oracle: brute force over the global state and all its periodic images, which every process can work out for itself.
+#include "parallel/halo.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "mpi/grids.hpp"
+#include "mpi/world.hpp"
+#include "particles/frozen.hpp"
+#include "unit/serial/scenes.hpp"
+
+namespace mappm {
+namespace {
+
+using testing::Built;
+using testing::world;
+
+/// Moves everything by up to a quarter of rcut, as a step may, and gives every field a value of its own.
+template <int D>
+void stir(const Model<D>& model, State<D>& state) {
+  const auto share = [](std::uint64_t id, int axis) {  // in (-1, 1)
+    return static_cast<double>(ParticleHash(id).add(static_cast<std::uint64_t>(axis)).value() >> 12) / (0.5 * box_quanta) -
+           1.0;
+  };
+  for (std::size_t i = 0; i < state.fluid.size(); ++i) {
+    for (int axis = 0; axis < D; ++axis) {
+      const double moved = std::nearbyint(0.25 * share(state.fluid.id[i], axis) / model.pair.length[axis]);
+      state.fluid.x(axis)[i] = wrap_position(state.fluid.x(axis)[i] + moved);
+      state.fluid.v(axis)[i] = share(state.fluid.id[i], axis + 7);
+    }
+    state.fluid.density()[i] = 10.0 + share(state.fluid.id[i], 20);
+  }
+  for (Solid<D>& solid : state.solids) {
+    for (int axis = 0; axis < D; ++axis) {
+      const double moved = std::nearbyint(0.25 * share(~solid.id, axis) / model.pair.length[axis]);
+      solid.x[axis] = wrap_position(solid.x[axis] + moved);
+    }
+    for (std::size_t k = 0; k < solid.density.size(); ++k) solid.density[k] = share(~solid.id, 100 + static_cast<int>(k));
+    solid.contacts = {{solid.id + 1, 2, 3, {{0.25}}}};
+    solid.fluid_impulse[0] = static_cast<Int128>(solid.id) << 70;
+    solid.sampled_impulse[1] = -5;
+  }
+}
+
+/// The part of a global state that a process owns by the places of another state with the same particles.
+template <int D>
+State<D> share_of(const State<D>& global, const State<D>& places, const Region<D>& region) {
+  State<D> share;
+  for (std::size_t i = 0; i < global.fluid.size(); ++i) {
+    Vec<D, double> x;
+    for (int axis = 0; axis < D; ++axis) x[axis] = places.fluid.x(axis)[i];
+    if (!region.contains(x)) continue;
+    share.fluid.id.push_back(global.fluid.id[i]);
+    for (std::size_t f = 0; f < global.fluid.field.size(); ++f) share.fluid.field[f].push_back(global.fluid.field[f][i]);
+  }
+  for (std::size_t i = 0; i < global.solids.size(); ++i)
+    if (region.contains(places.solids[i].x)) share.solids.push_back(global.solids[i]);
+  return share;
+}
+
+template <int D>
+Region<D> widened(const Model<D>& model, Region<D> region, double margin) {
+  for (int axis = 0; axis < D; ++axis) {
+    region.low[axis] -= std::ceil(margin / model.pair.length[axis]);
+    region.high[axis] += std::ceil(margin / model.pair.length[axis]);
+  }
+  return region;
+}
+
+/// Calls f(x) for every periodic image of a position that lies in `region`.
+template <int D, class F>
+void for_each_image(const Vec<D, double>& x, const Region<D>& region, F&& f) {
+  for (int n = 0; n < (D == 2 ? 9 : 27); ++n) {
+    Vec<D, double> image = x;
+    for (int axis = 0, rest = n; axis < D; ++axis, rest /= 3) image[axis] += (rest % 3 - 1) * box_quanta;
+    if (region.contains(image)) f(image);
+  }
+}
+
+template <int D>
+using Row = std::vector<double>;  // all fields of a PP at its place in the frame of the region, after its id
+
+template <int D>
+std::multiset<Row<D>> rows(const FluidParticles<D>& fluid) {
+  std::multiset<Row<D>> set;
+  for (std::size_t i = 0; i < fluid.size(); ++i) {
+    Row<D> row{static_cast<double>(fluid.id[i])};
+    for (const auto& values : fluid.field) row.push_back(values[i]);
+    set.insert(row);
+  }
+  return set;
+}
+
+/// Owned PPs and ghosts as brute force finds them.
+template <int D>
+std::multiset<Row<D>> expected_rows(const State<D>& global, const Region<D>& reach) {
+  std::multiset<Row<D>> set;
+  for (std::size_t i = 0; i < global.fluid.size(); ++i) {
+    Vec<D, double> x;
+    for (int axis = 0; axis < D; ++axis) x[axis] = global.fluid.x(axis)[i];
+    for_each_image<D>(x, reach, [&](const Vec<D, double>& image) {
+      Row<D> row{static_cast<double>(global.fluid.id[i])};
+      for (std::size_t f = 0; f < global.fluid.field.size(); ++f)
+        row.push_back(f < D ? image[static_cast<int>(f)] : global.fluid.field[f][i]);
+      set.insert(row);
+    });
+  }
+  return set;
+}
+
+template <int D>
+std::multiset<Row<D>> solid_rows(const std::vector<Solid<D>>& solids) {
+  std::multiset<Row<D>> set;
+  for (const Solid<D>& solid : solids) {
+    Row<D> row{static_cast<double>(solid.id)};
+    for (int axis = 0; axis < D; ++axis) row.push_back(solid.x[axis]);
+    set.insert(row);
+  }
+  return set;
+}
+
+template <int D>
+std::multiset<Row<D>> expected_solid_rows(const State<D>& global, const Region<D>& reach, const Region<D>& without) {
+  std::multiset<Row<D>> set;
+  for (const Solid<D>& solid : global.solids)
+    for_each_image<D>(solid.x, reach, [&](const Vec<D, double>& image) {
+      if (without.contains(image)) return;
+      Row<D> row{static_cast<double>(solid.id)};
+      for (int axis = 0; axis < D; ++axis) row.push_back(image[axis]);
+      set.insert(row);
+    });
+  return set;
+}
+
+template <int D>
+Region<D> nowhere() {
+  return {};
+}
+
+/// A copy must bring all that its owner knows but contacts and the densities of FPs that are out of reach.
+template <int D>
+void expect_true_copy(const Model<D>& model, const Solid<D>& copy, const Solid<D>& original, const Region<D>& reach) {
+  EXPECT_EQ(copy.shape, original.shape);
+  EXPECT_EQ(copy.group, original.group);
+  EXPECT_EQ(copy.motion, original.motion);
+  EXPECT_TRUE(copy.momentum == original.momentum);
+  EXPECT_TRUE(copy.angular_momentum == original.angular_momentum);
+  EXPECT_EQ(copy.orientation.component, original.orientation.component);
+  const SolidInStep<D> body = solid_in_step(model, copy);
+  for (std::size_t k = 0; k < original.density.size(); ++k) {
+    const bool needed = reach.contains(place(copy, body.velocity, body.shape->frozen[k], model.pair.length).x);
+    EXPECT_TRUE(!needed || copy.density[k] == original.density[k]);
+  }
+}
+
+/// Every FP of every solid lies in the region of exactly one process; each reports one density and one impulse.
+template <int D>
+void expect_reports_to_come_home(const Model<D>& model, Halo<D>& halo, const State<D>& state,
+                                 const std::vector<Solid<D>>& copies) {
+  const auto value = [](std::uint64_t id, std::uint32_t k) { return 1000.0 * static_cast<double>(id) + k; };
+  std::map<std::uint64_t, std::vector<int>> reported;
+  for (const Solid<D>& solid : state.solids) reported[solid.id].assign(solid.density.size(), 0);
+  const auto inside = [&](const Solid<D>& solid) {
+    std::vector<FrozenInStep<D>> frozen;
+    place_frozen(model, solid_in_step(model, solid), 0, halo.region(), frozen);
+    return frozen;
+  };
+  std::vector<HomeReport<D>> reports(copies.size());
+  for (std::size_t c = 0; c < copies.size(); ++c) {
+    reports[c].solid = copies[c].id;
+    for (const FrozenInStep<D>& fp : inside(copies[c])) {
+      reports[c].index.push_back(fp.index);
+      reports[c].density.push_back(value(copies[c].id, fp.index));
+      reports[c].fluid.linear[0] += 1;
+      reports[c].fluid.angular[0] -= Int128{1} << 80;
+    }
+  }
+  for (const Solid<D>& solid : state.solids)
+    for (const FrozenInStep<D>& fp : inside(solid)) ++reported[solid.id][fp.index];
+  for (const HomeReport<D>& report : halo.send_home(copies, std::move(reports))) {
+    const auto home = reported.find(report.solid);
+    EXPECT_TRUE(home != reported.end()) << "a report for solid " << report.solid << " came to another process";
+    if (home == reported.end()) continue;
+    EXPECT_TRUE(report.fluid.linear[0] == static_cast<Int128>(report.index.size()));
+    EXPECT_TRUE(report.fluid.angular[0] == -(static_cast<Int128>(report.index.size()) << 80));
+    for (std::size_t n = 0; n < report.index.size(); ++n) {
+      EXPECT_EQ(report.density[n], value(report.solid, report.index[n]));
+      ++home->second[report.index[n]];
+    }
+  }
+  for (const auto& [id, counts] : reported)
+    EXPECT_EQ(std::count(counts.begin(), counts.end(), 1), static_cast<std::ptrdiff_t>(counts.size())) << "solid " << id;
+}
+
+template <int D>
+void expect_brute_force_halo(const Built<D>& built, const Domains<D>& domains) {
+  const Model<D>& model = built.model;
+  const State<D> before = built.state();
+  State<D> global = before;
+  stir(model, global);
+  const Region<D> region = domains.region(world().rank());
+  State<D> state = share_of(global, before, region);
+  Halo<D> halo(model, domains, world());
+  std::vector<Solid<D>> copies;
+  halo.exchange(state, copies);
+
+  const Region<D> reach = widened(model, region, 1.0);
+  EXPECT_EQ(rows(state.fluid), expected_rows(global, reach));
+  EXPECT_EQ(solid_rows(state.solids), expected_solid_rows(global, region, nowhere<D>()));
+  EXPECT_EQ(solid_rows(copies), expected_solid_rows(global, widened(model, region, solid_margin(model)), region));
+  EXPECT_TRUE(std::is_sorted(state.solids.begin(), state.solids.end(),
+                             [](const Solid<D>& a, const Solid<D>& b) { return a.id < b.id; }));
+  std::map<std::uint64_t, const Solid<D>*> original;
+  for (const Solid<D>& solid : global.solids) original[solid.id] = &solid;
+  for (const Solid<D>& copy : copies) expect_true_copy(model, copy, *original.at(copy.id), reach);
+  expect_reports_to_come_home(model, halo, state, copies);
+
+  // Without the ghosts the processes hold the global state: every particle and solid is owned exactly once.
+  State<D> owned = share_of(state, state, region);
+  EXPECT_EQ(testing::total(owned.fluid.size()), global.fluid.size());
+  EXPECT_EQ(testing::total(owned.solids.size()), global.solids.size());
+  EXPECT_EQ(testing::total(digest_share(owned)), digest_share(global));
+  EXPECT_EQ(halo.bytes_sent() > 0, world().size() > 1);
+}
+
+template <int D>
+void expect_brute_force_halos(const std::string& scene) {
+  const Built<D> built(scene);
+  for (const std::string& grid : testing::all_grids<D>(world().size())) {
+    SCOPED_TRACE(grid);
+    const Domains<D> domains = make_domains<D>(built.model, world().size(), grid);
+    expect_brute_force_halo(built, domains);
+    if (world().size() > 1) expect_brute_force_halo(built, testing::uneven(built.model, domains));
+  }
+}
+
+TEST(Halo, owned_ghosts_and_copies_are_those_of_brute_force_in_the_plane) {
+  expect_brute_force_halos<2>(testing::dense_discs());
+}
+
+TEST(Halo, owned_ghosts_and_copies_are_those_of_brute_force_with_walls) {
+  expect_brute_force_halos<2>(testing::channel());
+}
+
+TEST(Halo, owned_ghosts_and_copies_are_those_of_brute_force_in_space) {
+  expect_brute_force_halos<3>(testing::spheres());
+}
+
+TEST(Halo, positions_do_not_drift_through_many_exchanges) {
+  const Built<2> built(testing::dense_discs());
+  const Domains<2> domains = make_domains<2>(built.model, world().size(), "");
+  const Region<2> region = domains.region(world().rank());
+  State<2> state = built.state(region);
+  const std::uint64_t digest = testing::total(digest_share(state));
+  Halo<2> halo(built.model, domains, world());
+  std::vector<Solid<2>> copies;
+  for (int n = 0; n < 5; ++n) {
+    halo.exchange(state, copies);
+    state = share_of(state, state, region);
+  }
+  EXPECT_EQ(testing::total(digest_share(state)), digest);
+}
+
+}  // namespace
+}  // namespace mappm

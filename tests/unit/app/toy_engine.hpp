@@ -1,0 +1,36 @@
+// An engine that can be followed by hand: every PP gains a kick along x in every step, and nothing else happens.
+#pragma once
+
+#include <csignal>
+#include <string>
+
+#include "particles/engine.hpp"
+#include "particles/model.hpp"
+
+namespace mappm::testing_tools {
+
+inline constexpr double kick = 0.125;  // c
+
+class ToyEngine {
+ public:
+  explicit ToyEngine(State<2>&& state) : state_(std::move(state)) {}
+
+  void step() {
+    for (double& v : state_.fluid.v(0)) v += kick;
+    state_.outside_impulse[0] += static_cast<Int128>(state_.fluid.size()) * static_cast<Int128>(kick / velocity_quantum);
+    ++state_.step;
+    if (state_.step == bad_step) error_ = "step 7: particle 1: v = 99: too fast";
+    if (state_.step == signal_step) std::raise(SIGTERM);
+  }
+  State<2>& state() { return state_; }
+  const std::string& range_error() const { return error_; }
+  PhaseSeconds phase_seconds() const { return {{"toy", 0.5}}; }
+
+  std::uint64_t bad_step = 0, signal_step = 0;  // 0: never
+
+ private:
+  State<2> state_;
+  std::string error_;
+};
+
+}  // namespace mappm::testing_tools
