@@ -35,7 +35,8 @@ int main(int argc, char** argv) {
   Neighbours neighbours = Neighbours::cells;
   const std::map<std::string, Neighbours> searches{{"cells", Neighbours::cells}, {"all-pairs", Neighbours::all_pairs}};
   const auto add_options = [&](CLI::App& command) {
-    command.add_option("--neighbours", neighbours, "neighbour search: cells, or all-pairs (the oracle, for small scenes)")
+    command
+        .add_option("--neighbours", neighbours, "neighbour search: cells, or all-pairs (the oracle, for small scenes)")
         ->transform(CLI::CheckedTransformer(searches));
   };
   return run_command(argc, argv, group, "mappm-reference", add_options, [&](const RunOptions& options) {

@@ -11,11 +11,11 @@
 namespace mappm {
 
 struct RunOptions {
-  std::string scene;                     // path of the scene
-  std::vector<std::string> overrides;    // KEY=VALUE
-  std::optional<std::uint64_t> steps;    // total number of steps, relaxation included; by default what the scene says
-  std::string out;                       // output folder; by default out/<scene name>
-  std::string resume;                    // checkpoint, or folder; empty: from the start
+  std::string scene;                   // path of the scene
+  std::vector<std::string> overrides;  // KEY=VALUE
+  std::optional<std::uint64_t> steps;  // total number of steps, relaxation included; by default what the scene says
+  std::string out;                     // output folder; by default out/<scene name>
+  std::string resume;                  // checkpoint, or folder; empty: from the start
   bool quiet = false;
 
   /// The options that a resumed run must be given again.

@@ -56,7 +56,7 @@ class StopWatch {
 };
 
 template <int D, class E>
-  requires Engine<E, D>
+requires Engine<E, D>
 class RunLoop {
  public:
   RunLoop(const RunSetup<D>& setup, E& engine)
@@ -126,7 +126,7 @@ class RunLoop {
 };
 
 template <int D, class E>
-  requires Engine<E, D>
+requires Engine<E, D>
 void RunLoop<D, E>::begin() {
   const auto& [scene, model, group, options, start, program, warnings, domains, threads] = setup_;
   on_first(group, [&] { make_folder(folder_); });
@@ -161,7 +161,7 @@ void RunLoop<D, E>::begin() {
 
 /// Steps to the end, with all output; false if a signal ended it before.
 template <int D, class E>
-  requires Engine<E, D>
+requires Engine<E, D>
 bool RunLoop<D, E>::advance() {
   if (!setup_.start.resumed_step.has_value()) write_outputs();
   while (step() < last_step_) {
@@ -181,14 +181,14 @@ bool RunLoop<D, E>::advance() {
 }
 
 template <int D, class E>
-  requires Engine<E, D>
+requires Engine<E, D>
 bool RunLoop<D, E>::outputs_due() const {
   const OutputScene& output = setup_.scene.output;
   return step() == last_step_ || falls_on(output.sample) || falls_on(output.snapshot) || falls_on(output.checkpoint);
 }
 
 template <int D, class E>
-  requires Engine<E, D>
+requires Engine<E, D>
 void RunLoop<D, E>::write_outputs() {
   const OutputScene& output = setup_.scene.output;
   output_.time([&] {
@@ -202,7 +202,7 @@ void RunLoop<D, E>::write_outputs() {
 }
 
 template <int D, class E>
-  requires Engine<E, D>
+requires Engine<E, D>
 void RunLoop<D, E>::sample() {
   State<D>& state = engine_.state();
   const Totals<D> totals = measure(setup_.model, state, setup_.group);
@@ -214,7 +214,7 @@ void RunLoop<D, E>::sample() {
 }
 
 template <int D, class E>
-  requires Engine<E, D>
+requires Engine<E, D>
 void RunLoop<D, E>::save() {
   output_.time([&] {
     saved_ = save_checkpoint(folder_ / checkpoint_folder_name, setup_.scene.text, engine_.state(), sampled_step_,
@@ -225,7 +225,7 @@ void RunLoop<D, E>::save() {
 
 /// Keeps for run.json what the totals say.
 template <int D, class E>
-  requires Engine<E, D>
+requires Engine<E, D>
 void RunLoop<D, E>::remember(const Totals<D>& totals) {
   const auto list = [](const Vec<D, Int128>& value) {
     return std::vector<Int128>(value.component, value.component + D);
@@ -241,7 +241,7 @@ void RunLoop<D, E>::remember(const Totals<D>& totals) {
 
 /// Collective. Times are those of the slowest process.
 template <int D, class E>
-  requires Engine<E, D>
+requires Engine<E, D>
 void RunLoop<D, E>::write_record(const std::string& state, const std::string& message) {
   PhaseSeconds phases = engine_.phase_seconds();
   phases.emplace_back("output", output_.seconds());
@@ -261,7 +261,7 @@ void RunLoop<D, E>::write_record(const std::string& state, const std::string& me
 /// The state may hold nonsense: the figures stay those of the last sample. A disk that is full for a checkpoint may be
 /// full for this as well; the error that is under way matters more.
 template <int D, class E>
-  requires Engine<E, D>
+requires Engine<E, D>
 void RunLoop<D, E>::write_record_of_failure(const std::string& state, const std::string& message) {
   progress_->finish();
   try {
@@ -271,7 +271,7 @@ void RunLoop<D, E>::write_record_of_failure(const std::string& state, const std:
 }
 
 template <int D, class E>
-  requires Engine<E, D>
+requires Engine<E, D>
 void RunLoop<D, E>::say_end(const std::string& message) {
   progress_->finish();
   if (!message.empty()) fmt::print("stopped at step {}; {}\n", record_.step, message);

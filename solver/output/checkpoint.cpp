@@ -142,8 +142,9 @@ Solid<D> checked_solid(const std::uint64_t* words, const Model<D>& model, const 
   const std::uint64_t densities = words[solid_word_count<D>() - 2];
   const std::uint64_t shape = words[solid_shape_word];
   if (shape >= model.shapes.size() || densities != model.shapes[shape].frozen.size())
-    refuse(path, "its solids have other frozen particles than this program gives them; resume with the program that "
-                 "wrote it");
+    refuse(path,
+           "its solids have other frozen particles than this program gives them; resume with the program that "
+           "wrote it");
   return solid_of_words<D>(words);
 }
 
@@ -192,10 +193,10 @@ void write_checkpoint(const std::string& path, const std::string& scene_text, co
   file.text_attribute("/", "format", format_name);
   file.attribute("/", "version", number(format_version));
   file.attribute("/", "dimension", number(D));
-  file.rows("/scene",
-            group.is_first() ? std::vector<std::uint8_t>(scene_text.begin(), scene_text.end())
-                             : std::vector<std::uint8_t>{},
-            0);
+  file.rows(
+      "/scene",
+      group.is_first() ? std::vector<std::uint8_t>(scene_text.begin(), scene_text.end()) : std::vector<std::uint8_t>{},
+      0);
   file.attribute("/", "scene_hash", number(text_hash(scene_text)));
   file.attribute("/", "step", number(state.step));
   file.attribute("/", "sampled_step", number(sampled_step));

@@ -3,10 +3,10 @@
 //   /            attributes: format, version, dimension, scene_hash, step, sampled_step, digest, ledger_hash,
 //                start_momentum, outside_impulse (low and high word an axis)
 //   /scene       the declaration of the scene, a byte a letter
-//   /fluid/id, /fluid/x_x ..., v_x ..., density     a row a PP: position quanta, velocity and density as counts of quanta
-//   /solids/words      a row of 64-bit words a solid (see solid_words.hpp)
-//   /solids/density    of the FPs, one solid's after the other's: counts of density quanta
-//   /solids/contacts   a row of words a contact, one solid's after the other's
+//   /fluid/id, /fluid/x_x ..., v_x ..., density     a row a PP: position quanta, velocity and density as counts of
+//   quanta /solids/words      a row of 64-bit words a solid (see solid_words.hpp) /solids/density    of the FPs, one
+//   solid's after the other's: counts of density quanta /solids/contacts   a row of words a contact, one solid's after
+//   the other's
 #pragma once
 
 #include <cstdint>

@@ -9,13 +9,21 @@
 namespace mappm {
 
 template <>
-hid_t hdf5_type<double>() { return H5T_NATIVE_DOUBLE; }
+hid_t hdf5_type<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
 template <>
-hid_t hdf5_type<std::int64_t>() { return H5T_NATIVE_INT64; }
+hid_t hdf5_type<std::int64_t>() {
+  return H5T_NATIVE_INT64;
+}
 template <>
-hid_t hdf5_type<std::uint64_t>() { return H5T_NATIVE_UINT64; }
+hid_t hdf5_type<std::uint64_t>() {
+  return H5T_NATIVE_UINT64;
+}
 template <>
-hid_t hdf5_type<std::uint8_t>() { return H5T_NATIVE_UINT8; }
+hid_t hdf5_type<std::uint8_t>() {
+  return H5T_NATIVE_UINT8;
+}
 
 namespace {
 
@@ -89,9 +97,8 @@ void select_rows(hid_t space, std::uint64_t first, std::uint64_t count, std::siz
 Hdf5Writer::Hdf5Writer(const std::string& path, const Group& group) : path_(path), group_(group) {
   set_up_library();
   const Hdf5Handle access(group.hdf5_file_access(), H5Pclose);
-  together(group, [&] {
-    file_ = checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose, path);
-  });
+  together(group,
+           [&] { file_ = checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose, path); });
 }
 
 void Hdf5Writer::make_group(const std::string& name) {
@@ -106,10 +113,9 @@ void Hdf5Writer::text_attribute(const std::string& where, const std::string& nam
     H5Tset_size(type.id(), text.empty() ? 1 : text.size());
     H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
     const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-    const Hdf5Handle attribute =
-        checked(H5Acreate_by_name(file_.id(), where.c_str(), name.c_str(), type.id(), space.id(), H5P_DEFAULT,
-                                  H5P_DEFAULT, H5P_DEFAULT),
-                H5Aclose, path_);
+    const Hdf5Handle attribute = checked(H5Acreate_by_name(file_.id(), where.c_str(), name.c_str(), type.id(),
+                                                           space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                                         H5Aclose, path_);
     check(H5Awrite(attribute.id(), type.id(), text.c_str()), path_);
   });
 }
@@ -118,10 +124,9 @@ template <class T>
 void Hdf5Writer::attribute(const std::string& where, const std::string& name, const std::vector<T>& values) {
   together(group_, [&] {
     const Hdf5Handle space = row_space(values.size(), 0);
-    const Hdf5Handle attribute =
-        checked(H5Acreate_by_name(file_.id(), where.c_str(), name.c_str(), hdf5_type<T>(), space.id(), H5P_DEFAULT,
-                                  H5P_DEFAULT, H5P_DEFAULT),
-                H5Aclose, path_);
+    const Hdf5Handle attribute = checked(H5Acreate_by_name(file_.id(), where.c_str(), name.c_str(), hdf5_type<T>(),
+                                                           space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                                         H5Aclose, path_);
     check(H5Awrite(attribute.id(), hdf5_type<T>(), values.data()), path_);
   });
 }
@@ -135,9 +140,9 @@ void Hdf5Writer::rows(const std::string& name, const std::vector<T>& values, std
   Hdf5Handle data;
   together(group_, [&] {
     const Hdf5Handle space = row_space(all[0], width);
-    data = checked(H5Dcreate2(file_.id(), name.c_str(), hdf5_type<T>(), space.id(), H5P_DEFAULT, H5P_DEFAULT,
-                              H5P_DEFAULT),
-                   H5Dclose, path_);
+    data =
+        checked(H5Dcreate2(file_.id(), name.c_str(), hdf5_type<T>(), space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                H5Dclose, path_);
   });
   together(group_, [&] {
     if (all[0] == 0) return;  // a data set without rows has no place in the file
@@ -168,8 +173,8 @@ Hdf5Reader::Hdf5Reader(const std::string& path) : path_(path) {
 void Hdf5Reader::refuse(const std::string& what) const { throw InputError(path_ + ": cannot be read: " + what); }
 
 std::string Hdf5Reader::text_attribute(const std::string& where, const std::string& name) const {
-  const Hdf5Handle attribute(
-      H5Aopen_by_name(file_.id(), where.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle attribute(H5Aopen_by_name(file_.id(), where.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                             H5Aclose);
   if (attribute.id() < 0) refuse("attribute '" + name + "' is missing");
   const Hdf5Handle type(H5Aget_type(attribute.id()), H5Tclose);
   if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) != 0)
@@ -182,8 +187,8 @@ std::string Hdf5Reader::text_attribute(const std::string& where, const std::stri
 
 template <class T>
 std::vector<T> Hdf5Reader::attribute(const std::string& where, const std::string& name) const {
-  const Hdf5Handle attribute(
-      H5Aopen_by_name(file_.id(), where.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle attribute(H5Aopen_by_name(file_.id(), where.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                             H5Aclose);
   if (attribute.id() < 0) refuse("attribute '" + name + "' is missing");
   const Hdf5Handle space(H5Aget_space(attribute.id()), H5Sclose);
   const hssize_t count = H5Sget_simple_extent_npoints(space.id());

@@ -20,12 +20,12 @@ struct RunRecord {
   std::string scene_file, scene_name, scene_text;
   Terms terms;
   std::vector<std::string> warnings;
-  std::uint64_t first_step = 0, step = 0;   // of this program run: begun at, reached
-  double time_step = 0.0;                   // in scene units
-  std::vector<std::pair<std::string, double>> wall_seconds;  // by phase
-  std::string digest;                       // of the state at `step`
+  std::uint64_t first_step = 0, step = 0;                             // of this program run: begun at, reached
+  double time_step = 0.0;                                             // in scene units
+  std::vector<std::pair<std::string, double>> wall_seconds;           // by phase
+  std::string digest;                                                 // of the state at `step`
   std::vector<Int128> start_momentum, end_momentum, outside_impulse;  // iota, an entry an axis
-  double iota = 0.0;                        // in scene units
+  double iota = 0.0;                                                  // in scene units
   int ranks = 1, threads = 1;
   std::vector<int> domains;
   std::uint64_t particles = 0, solids = 0;  // PPs and FPs; SPs

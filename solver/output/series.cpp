@@ -44,8 +44,7 @@ Columns series_columns(const Model<D>& model, const UnitNames& units, const Tota
   for (int axis = 0; axis < D; ++axis) volume *= model.box[axis];
   const double fluid_fraction = static_cast<double>(totals.fluid_count) / (model.rest_density * volume);
   columns.add("superficial_velocity", units.velocity, scale.velocity * (fluid_fraction * velocity));
-  if (model.terms.solids)
-    add_solid_columns(model, units, totals, totals.step - sampled_step, velocity, columns);
+  if (model.terms.solids) add_solid_columns(model, units, totals, totals.step - sampled_step, velocity, columns);
 
   const double energy = scale.mass * scale.velocity * scale.velocity * energy_quantum;
   columns.add("fluid_energy", units.energy, static_cast<double>(totals.fluid_energy) * energy);
@@ -72,9 +71,8 @@ Series<D>::Series(const std::filesystem::path& folder, const Model<D>& model, co
 
 template <int D>
 void Series<D>::add(const Totals<D>& totals, const Vec<D, Int128>& start_momentum, std::uint64_t sampled_step) {
-  on_first(group_, [&] {
-    file_->add(series_columns(model_, units_, totals, start_momentum, sampled_step).row() + '\n');
-  });
+  on_first(group_,
+           [&] { file_->add(series_columns(model_, units_, totals, start_momentum, sampled_step).row() + '\n'); });
 }
 
 template Columns series_columns<2>(const Model<2>&, const UnitNames&, const Totals<2>&, const Vec<2, Int128>&,

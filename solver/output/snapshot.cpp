@@ -103,8 +103,8 @@ SolidPoints solid_points(const Model<D>& model, const State<D>& state, std::uint
   for (const Solid<D>& solid : state.solids) {
     const Shape<D>& shape = model.shapes[solid.shape];
     const RigidVelocity<D> velocity = rigid_velocity(solid, shape);
-    const Vec<D, double> drag = scale.force() * mean_force(solid.fluid_impulse - solid.sampled_impulse,
-                                                           state.step - sampled_step, model.dt);
+    const Vec<D, double> drag =
+        scale.force() * mean_force(solid.fluid_impulse - solid.sampled_impulse, state.step - sampled_step, model.dt);
     for (const Ball<D>& ball : shape.balls) {
       const Vec<D, double> offset = rotate(solid.orientation, ball.offset);
       Vec<D, double> centre;

@@ -60,8 +60,7 @@ Columns SolidSeries<D>::columns(std::uint64_t step, const double* values) const 
   columns.add("id", "", static_cast<std::uint64_t>(*values++));
   columns.add("position", units_.length, take<D>(values));
   columns.add("velocity", units_.velocity, take<D>(values));
-  const std::array<const char*, 4> names =
-      D == 2 ? std::array{"cos", "sin", "", ""} : std::array{"w", "x", "y", "z"};
+  const std::array<const char*, 4> names = D == 2 ? std::array{"cos", "sin", "", ""} : std::array{"w", "x", "y", "z"};
   for (int k = 0; k < orientations; ++k) columns.add(std::string("orientation_") + names[k], "", *values++);
   columns.add("angular_velocity", units_.angular_velocity, take<angular_components<D>>(values));
   columns.add("drag", units_.force, take<D>(values));

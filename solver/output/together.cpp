@@ -27,9 +27,12 @@ void agree(const Group& group, const std::string& failure) {
   const std::string text = group.broadcast(failure, lowest);
   const std::string message = text.substr(1);
   switch (text[0]) {
-    case input_kind: throw InputError(message);
-    case range_kind: throw RangeError(message);
-    default: throw std::runtime_error(message);
+    case input_kind:
+      throw InputError(message);
+    case range_kind:
+      throw RangeError(message);
+    default:
+      throw std::runtime_error(message);
   }
 }
 

@@ -18,8 +18,8 @@ void visit_sums(Totals<D>& totals, Visit&& visit) {
   visit(totals.frozen_count);
   visit(totals.sp_count);
   visit(totals.mobile_count);
-  for (Vec<D, Int128>* sum : {&totals.fluid_momentum, &totals.mobile_velocity, &totals.sp_impulse,
-                              &totals.wall_impulse, &totals.momentum, &totals.outside_impulse})
+  for (Vec<D, Int128>* sum : {&totals.fluid_momentum, &totals.mobile_velocity, &totals.sp_impulse, &totals.wall_impulse,
+                              &totals.momentum, &totals.outside_impulse})
     for (Int128& component : sum->component) visit(component);
   visit(totals.fluid_energy);
   visit(totals.solid_energy);

@@ -22,11 +22,11 @@ template <int D>
 struct Totals {
   std::uint64_t step = 0;
   Int128 fluid_count = 0, frozen_count = 0, sp_count = 0, mobile_count = 0;
-  Vec<D, Int128> fluid_momentum{};                // iota; in velocity quanta too, as the PP mass is 1
-  Vec<D, Int128> mobile_velocity{};               // mean_velocity_quantum
-  Vec<D, Int128> sp_impulse{}, wall_impulse{};    // from the fluid since the last sample, iota
+  Vec<D, Int128> fluid_momentum{};                             // iota; in velocity quanta too, as the PP mass is 1
+  Vec<D, Int128> mobile_velocity{};                            // mean_velocity_quantum
+  Vec<D, Int128> sp_impulse{}, wall_impulse{};                 // from the fluid since the last sample, iota
   Int128 fluid_energy = 0, solid_energy = 0, spin_energy = 0;  // energy_quantum
-  Vec<D, Int128> momentum{}, outside_impulse{};   // of PPs and solids; iota
+  Vec<D, Int128> momentum{}, outside_impulse{};                // of PPs and solids; iota
   Int128 digest_sum = 0;
   double lowest_density = 0.0, highest_density = 0.0;  // over PPs, PPs per rcut^D; NaN where there are none
 

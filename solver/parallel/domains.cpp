@@ -29,11 +29,14 @@ std::vector<double> even_cuts(int count) {
   return cuts;
 }
 
+/// Along one axis: keeps the product of three in range.
+constexpr int most_domains = 1'000'000;
+
 template <int D>
 Vec<D, int> parse_grid(const std::string& text, int processes) {
   Vec<D, int> grid;
   std::size_t at = 0;
-  int product = 1;
+  std::int64_t product = 1;
   for (int axis = 0; axis < D; ++axis) {
     std::size_t used = 0;
     try {
@@ -43,7 +46,7 @@ Vec<D, int> parse_grid(const std::string& text, int processes) {
     }
     at += used;
     const bool separator_fits = axis == D - 1 ? at == text.size() : at < text.size() && text[at] == 'x';
-    if (grid[axis] < 1 || !separator_fits)
+    if (grid[axis] < 1 || grid[axis] > most_domains || !separator_fits)
       throw InputError("command line", "--domains", text,
                        fmt::format("expected {} positive numbers such as {}", D, D == 2 ? "2x4" : "2x2x1"));
     ++at;

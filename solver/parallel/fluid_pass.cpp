@@ -53,7 +53,12 @@ NeighbourSums<D> FluidPass<D>::sums(std::size_t i) const {
 template <int D>
 void FluidPass<D>::prepare(FluidParticles<D>& fluid) {
   const std::size_t count = fluid.size(), padded = count + lane_count;
-  for (auto& values : fluid.field) reserve_tightly(values, padded);  // whole lanes are read behind the last particle
+  for (auto& values : fluid.field) {
+    // Whole lanes are read behind the last particle. They count as beyond the cutoff, but 0 times NaN would not be 0.
+    reserve_tightly(values, padded);
+    values.resize(padded, 0.0);
+    values.resize(count);
+  }
   fit(v2_, padded);
   fit(pv2_, padded);
   for (std::size_t i = 0; i < count; ++i) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -165,10 +166,14 @@ template <int D>
 std::string range_message(RangeFault fault, std::uint64_t step, std::uint64_t id, const Vec<D, double>& v,
                           const NeighbourSums<D>& sums) {
   switch (fault) {
-    case RangeFault::impulse:
+    case RangeFault::impulse: {
+      double largest = 0.0;
+      for (const std::int64_t component : sums.impulse.component)
+        if (std::fabs(static_cast<double>(component)) > std::fabs(largest)) largest = static_cast<double>(component);
       return fmt::format("step {}: particle {}: impulse {:.3g} m c is too large for its fixed-point range; "
                          "particles overlap or the step is too long",
-                         step, id, static_cast<double>(sums.impulse[0]) * velocity_quantum);
+                         step, id, largest * velocity_quantum);
+    }
     case RangeFault::displacement:
       return fmt::format("step {}: particle {}: moves more than rcut/4 in one step (velocity {:.3g} c before it); "
                          "the step is too long or the sound speed too low",

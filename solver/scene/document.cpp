@@ -144,7 +144,7 @@ std::string node_text(const toml::node& node) {
 
 std::string nearest_name(const std::string& word, const std::vector<std::string>& known) {
   std::string nearest;
-  std::size_t smallest = std::max<std::size_t>(2, word.size() / 2);
+  std::size_t smallest = std::max<std::size_t>(2, word.size() / 3);
   for (const std::string& name : known) {
     const std::size_t distance = edit_distance(word, name);
     if (distance > smallest || (distance == smallest && !nearest.empty())) continue;

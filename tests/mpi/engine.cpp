@@ -138,10 +138,9 @@ TEST(ParallelEngine, equals_the_serial_one_with_walls_and_fixed_solids) {
 TEST(ParallelEngine, equals_the_serial_one_in_space) { expect_bits_of_the_serial_engine<3>(testing::spheres(), 200); }
 
 TEST(ParallelEngine, equals_the_serial_one_with_solids_alone) {
-  std::string scene = testing::spheres();
-  scene.replace(scene.find("viscosity = 0.5\n"), 16, "particles = false\n");
-  scene.replace(scene.find("fluid = [0.0, 0.0, 0.0005]\nsolid = \"balance\""), 43, "solid = [0.0, 0.0, 0.0005]");
-  scene.replace(scene.find("steps = 100\n"), 12, "steps = 100\nstep = 0.125\n");
+  std::string scene = testing::replaced(testing::spheres(), "viscosity = 0.5", "particles = false");
+  scene = testing::replaced(scene, "fluid = [0.0, 0.0, 0.0005]\nsolid = \"balance\"", "solid = [0.0, 0.0, 0.0005]");
+  scene = testing::replaced(scene, "steps = 100", "steps = 100\nstep = 0.125");
   expect_bits_of_the_serial_engine<3>(scene, 200);
 }
 

@@ -1,4 +1,5 @@
-// Oracle: which files a run must leave, and a motion worked by hand (toy_engine.hpp): after n steps every PP moves at n/8.
+// Oracle: which files a run must leave, and a motion worked by hand (toy_engine.hpp): after n steps every PP moves at
+// n/8.
 #include "app/run_loop.hpp"
 
 #include <gtest/gtest.h>
@@ -146,7 +147,8 @@ TEST_F(ToyRun, stops_at_a_signal_with_a_checkpoint_and_says_how_to_go_on) {
   EXPECT_LE(stopped, 8u) << "the next sample at the latest";
   const std::string path = (folder_ / fmt::format("checkpoints/checkpoint_{:09}.h5", stopped)).string();
   EXPECT_TRUE(fs::exists(path));
-  EXPECT_TRUE(contains(printed, "resume with: toy run toy.toml --set a.b=1 --out " + options_.out + " --resume " + path))
+  EXPECT_TRUE(
+      contains(printed, "resume with: toy run toy.toml --set a.b=1 --out " + options_.out + " --resume " + path))
       << printed;
   EXPECT_TRUE(contains(printed.substr(printed.rfind('\n', printed.size() - 2)), "\ndigest ")) << "the last line";
 }

@@ -17,7 +17,8 @@ class ToyEngine {
 
   void step() {
     for (double& v : state_.fluid.v(0)) v += kick;
-    state_.outside_impulse[0] += static_cast<Int128>(state_.fluid.size()) * static_cast<Int128>(kick / velocity_quantum);
+    state_.outside_impulse[0] +=
+        static_cast<Int128>(state_.fluid.size()) * static_cast<Int128>(kick / velocity_quantum);
     ++state_.step;
     if (state_.step == bad_step) error_ = "step 7: particle 1: v = 99: too fast";
     if (state_.step == signal_step) std::raise(SIGTERM);

@@ -1,6 +1,6 @@
-// A model and a state small enough to be summed by hand, with units that are powers of two so that every figure below is
-// exact. Box 4 x 2 rcut; scene units of an internal unit: length 0.5, velocity 4, mass 8, hence time 0.125, force 256,
-// energy 128.
+// A model and a state small enough to be summed by hand, with units that are powers of two so that every figure below
+// is exact. Box 4 x 2 rcut; scene units of an internal unit: length 0.5, velocity 4, mass 8, hence time 0.125, force
+// 256, energy 128.
 #pragma once
 
 #include <cmath>

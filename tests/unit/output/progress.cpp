@@ -18,8 +18,7 @@ TEST(Progress, prints_a_plain_line_a_minute) {
   progress.update(150, 100.0);
   progress.update(200, 122.0);
   progress.finish();
-  EXPECT_EQ(out.str().substr(out.str().find('\n') + 1),
-            "step 200/1000  8.2e+03 particle-steps/s  remaining 0:08:08\n");
+  EXPECT_EQ(out.str().substr(out.str().find('\n') + 1), "step 200/1000  8.2e+03 particle-steps/s  remaining 0:08:08\n");
 }
 
 TEST(Progress, counts_from_the_step_at_which_a_run_was_resumed) {
@@ -33,8 +32,9 @@ TEST(Progress, draws_a_bar_and_clears_it) {
   std::ostringstream out;
   Progress progress(out, ProgressStyle::bar, 0, 1000, 5000);
   progress.update(500, 10.0);
-  EXPECT_EQ(out.str(), "\r[===============>               ]  50 %  step 500/1000  2.5e+05 particle-steps/s  "
-                       "remaining 0:00:10\033[K");
+  EXPECT_EQ(out.str(),
+            "\r[===============>               ]  50 %  step 500/1000  2.5e+05 particle-steps/s  "
+            "remaining 0:00:10\033[K");
   progress.update(501, 10.1);
   progress.finish();
   EXPECT_EQ(out.str().substr(out.str().size() - 4), "\r\033[K");

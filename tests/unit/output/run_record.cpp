@@ -38,9 +38,9 @@ RunRecord record() {
 
 TEST(RunRecord, has_every_key_that_readers_rely_on) {
   const auto json = nlohmann::json::parse(run_record_text(record()));
-  for (const char* key : {"commit", "compiler", "flags", "host", "date", "scene", "terms", "steps", "wall_seconds",
-                          "digest", "momentum", "ranks", "domains", "threads", "particles",
-                          "particle_steps_per_second", "state"})
+  for (const char* key :
+       {"commit", "compiler", "flags", "host", "date", "scene", "terms", "steps", "wall_seconds", "digest", "momentum",
+        "ranks", "domains", "threads", "particles", "particle_steps_per_second", "state"})
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_EQ(json["steps"], 25);
   EXPECT_EQ(json["first_step"], 5);

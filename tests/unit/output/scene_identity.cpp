@@ -26,8 +26,9 @@ positions = [
 )";
 
 TEST(SceneIdentity, leaves_out_output_and_length_of_the_run_only) {
-  EXPECT_EQ(scene_identity(scene),
-            "name = 'a'\n[fluid]\nspacing = 0.5\nrun.relax = 10\n[[body]]\npositions = [\n[ 0.1, 0.2 ],\n[ 0.3, 0.4 ]\n]\n");
+  EXPECT_EQ(
+      scene_identity(scene),
+      "name = 'a'\n[fluid]\nspacing = 0.5\nrun.relax = 10\n[[body]]\npositions = [\n[ 0.1, 0.2 ],\n[ 0.3, 0.4 ]\n]\n");
 }
 
 TEST(SceneIdentity, is_the_same_for_a_longer_run_with_other_output) {
@@ -46,7 +47,8 @@ TEST(SceneIdentity, knows_tables_written_in_one_line) {
 }
 
 TEST(SceneIdentity, sees_any_other_change) {
-  for (const auto& [from, to] : {std::pair{"0.5", "0.6"}, {"relax = 10", "relax = 11"}, {"0.3", "0.35"}, {"'a'", "'b'"}}) {
+  for (const auto& [from, to] :
+       {std::pair{"0.5", "0.6"}, {"relax = 10", "relax = 11"}, {"0.3", "0.35"}, {"'a'", "'b'"}}) {
     std::string other = scene;
     other.replace(other.find(from), std::string(from).size(), to);
     EXPECT_NE(scene_identity(other), scene_identity(scene)) << to;

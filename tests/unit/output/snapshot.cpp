@@ -58,9 +58,8 @@ TEST_F(Snapshot, shows_pps_and_fps_in_scene_units) {
   // The free ball, a quarter turn round, has its FP at (1/2 box) + (0, 1/8 rcut); the wall's second FP lies 1/4 below
   // y = 1/8 and comes in again at the top of the box of height 2. Scene lengths are half of these.
   const double ball_x = 1.0, ball_y = 0.5 + 0.0625, wall_x = 1.0;
-  EXPECT_EQ(values(fluid_, "Points"),
-            (Values{0.25, 0.25, 0, 0.75, 0.25, 0, 1.25, 0.75, 0, 1.75, 0.75, 0, ball_x, ball_y, 0, wall_x, 0.0625, 0,
-                    wall_x, 0.9375, 0}));
+  EXPECT_EQ(values(fluid_, "Points"), (Values{0.25,   0.25,   0, 0.75,   0.25,   0, 1.25,   0.75,   0, 1.75, 0.75, 0,
+                                              ball_x, ball_y, 0, wall_x, 0.0625, 0, wall_x, 0.9375, 0}));
   // FP of the ball: (0.5, -0.25) + 2 x (-1/8, 0), times 4
   EXPECT_EQ(values(fluid_, "PointData/velocity"),
             (Values{2, 0, 0, 1, 2, 0, -1, 0, 0, 0, 0, 0, 1, -1, 0, 0, 0, 0, 0, 0, 0}));

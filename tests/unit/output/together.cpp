@@ -50,10 +50,9 @@ TEST(Together, prefers_the_lowest_rank_and_keeps_the_type) {
 }
 
 TEST(Together, passes_a_defect_on_as_one) {
-  EXPECT_EQ(refusal<std::runtime_error>([] {
-              together(SingleGroup(), [] { throw std::logic_error("broken promise"); });
-            }),
-            "broken promise");
+  EXPECT_EQ(
+      refusal<std::runtime_error>([] { together(SingleGroup(), [] { throw std::logic_error("broken promise"); }); }),
+      "broken promise");
 }
 
 TEST(OnFirst, works_on_the_first_process_alone_and_tells_all_of_its_error) {

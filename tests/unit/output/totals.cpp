@@ -24,8 +24,8 @@ TEST(Totals, are_the_sums_worked_by_hand) {
   EXPECT_EQ(momentum(totals.fluid_momentum[1]), 0.5);
   EXPECT_EQ(static_cast<double>(totals.mobile_velocity[0]) * mean_velocity_quantum, 0.75);
   EXPECT_EQ(static_cast<double>(totals.mobile_velocity[1]) * mean_velocity_quantum, -0.25);
-  EXPECT_EQ(momentum(totals.sp_impulse[0]), 6.0);    // (6-2) + 0 + 2
-  EXPECT_EQ(momentum(totals.sp_impulse[1]), -3.0);   // (2-1) - 3 - 1
+  EXPECT_EQ(momentum(totals.sp_impulse[0]), 6.0);   // (6-2) + 0 + 2
+  EXPECT_EQ(momentum(totals.sp_impulse[1]), -3.0);  // (2-1) - 3 - 1
   EXPECT_EQ(momentum(totals.wall_impulse[0]), 1.0);
   EXPECT_EQ(static_cast<double>(totals.fluid_energy) * energy_quantum, 0.3125);  // (1/4 + 5/16 + 1/16) / 2
   EXPECT_EQ(static_cast<double>(totals.solid_energy) * energy_quantum, 3.0);     // 8 (5/16) + 8 (1/16)

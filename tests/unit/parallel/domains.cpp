@@ -162,7 +162,7 @@ TEST(DomainErrors, a_grid_that_does_not_match_the_processes) {
 }
 
 TEST(DomainErrors, bad_syntax) {
-  for (const std::string text : {"2", "2x", "x2", "2x2x1", "axb", "0x4", "-2x-2", "2 x2y", "2,2", "99999999999x1"})
+  for (const std::string text : {"2", "2x", "x2", "2x2x1", "axb", "0x4", "-2x-2", "2 x2y", "2,2", "99999999999x1", "2000000x2000000"})
     EXPECT_EQ(refusal(box_model<2>({{30.0, 30.0}}), 4, text),
               "command line: --domains = " + text + ": expected 2 positive numbers such as 2x4");
   EXPECT_EQ(refusal(box_model<3>({{30.0, 30.0, 30.0}}), 4, "2x2"),

@@ -254,10 +254,10 @@ TEST(ParticleStepConstants, by_hand) {
 
 TEST(RangeMessage, names_step_particle_value_and_cause) {
   NeighbourSums<2> sums{};
-  sums.impulse[0] = std::int64_t{1} << 51;
+  sums.impulse = {{5, -(std::int64_t{1} << 51)}};  // the larger of the two is named
   sums.density = std::int64_t{3} << 43;
   EXPECT_EQ(range_message<2>(RangeFault::impulse, 12, 345, {}, sums),
-            "step 12: particle 345: impulse 8 m c is too large for its fixed-point range; particles overlap or the step "
+            "step 12: particle 345: impulse -8 m c is too large for its fixed-point range; particles overlap or the step "
             "is too long");
   EXPECT_EQ(range_message<2>(RangeFault::displacement, 12, 345, {{3.0, 4.0}}, sums),
             "step 12: particle 345: moves more than rcut/4 in one step (velocity 5 c before it); the step is too long or "

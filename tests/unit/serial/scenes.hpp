@@ -26,6 +26,11 @@ struct Built {
   }
 };
 
+/// `text` with its first `from` replaced, which must be there.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
 /// The head of every scene: density 1 / spacing^D makes the mass of a PP 1.
 inline std::string head(const std::string& box, const std::string& spacing, const std::string& density,
                         const std::string& more = "") {
@@ -41,15 +46,15 @@ inline std::string dense_discs() {
 [[body]]
 shape = "disc"
 radius = 1.0
-density = 30.0
-velocity = [0.12, 0.05]
+density = 60.0
+velocity = [0.17, 0.05]
 angular_velocity = 0.1
 random = { count = 7, seed = 11, gap = 0.02 }
 [[body]]
 shape = "disc"
 radius = 0.9
-density = 20.0
-velocity = [-0.11, -0.04]
+density = 50.0
+velocity = [-0.16, -0.04]
 angular_velocity = -0.1
 random = { count = 7, seed = 12, gap = 0.02 }
 [[body]]
@@ -60,7 +65,7 @@ balls = [{ centre = [0.45, 0.0], radius = 0.5 }, { centre = [-0.45, 0.0], radius
 random = { count = 2, seed = 13, gap = 0.02 }
 [contact]
 model = "linear"
-stiffness = 40.0
+stiffness = 80.0
 restitution = 0.8
 friction = 0.3
 [force]
@@ -115,8 +120,8 @@ velocity = [0.1, 0.0]
 [[body]]
 shape = "disc"
 radius = 0.9
-density = 30.0
-velocity = [0.05, 0.15]
+density = 60.0
+velocity = [0.05, 0.2]
 angular_velocity = 0.1
 random = { count = 6, seed = 3, gap = 0.05 }
 [[body]]
@@ -127,7 +132,7 @@ motion = "fixed"
 position = [6.0, 9.0]
 [contact]
 model = "linear"
-stiffness = 40.0
+stiffness = 80.0
 restitution = 0.8
 friction = 0.3
 [force]

@@ -1,0 +1,136 @@
+"""The interfaces that scripts rely on: options, the last line, run.json, series.csv, snapshots, signals, the judge's
+command line.
+
+Oracle: the interface as README.md describes it, and pyvista as a reader of snapshots that knows nothing of this project.
+"""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista
+
+from verification.solver import MPI_ENVIRONMENT, ROOT, Options, Run, program, run
+
+SCENE = Path(__file__).parent / "scenes" / "crossing_2d.toml"
+LAST_LINE = re.compile(r"digest [0-9a-f]{16} step 20 particles \d+ ranks (\d) particle-steps/s [0-9.e+]+")
+
+
+def called(options: Options, out: Path, *more: str) -> subprocess.CompletedProcess:
+    return subprocess.run(
+        [*options.command(SCENE, out), *more], env=os.environ | MPI_ENVIRONMENT, capture_output=True, text=True,
+        check=True,
+    )
+
+
+@pytest.mark.parametrize("ranks", [0, 1, 2])
+def test_the_last_line_and_the_record(tmp_path: Path, ranks: int) -> None:
+    overrides = ("output.sample=10", "fluid.viscosity=0.003")
+    stdout = called(Options(ranks=ranks, steps=20, overrides=overrides), tmp_path).stdout
+    last = LAST_LINE.fullmatch(stdout.splitlines()[-1])
+    assert last, stdout
+    assert int(last[1]) == max(ranks, 1)
+
+    finished = Run(tmp_path)
+    record = finished.record
+    assert record["state"] == "finished"
+    assert record["steps"] == 20
+    assert record["ranks"] == max(ranks, 1)
+    assert record["digest"] in stdout.splitlines()[-1]
+    assert finished.scene["fluid"]["viscosity"] == 0.003  # the scene as it was run
+    assert "rotation of solids" in record["terms"]
+    for key in ("commit", "compiler", "flags", "host", "date", "wall_seconds", "particles", "threads"):
+        assert record[key], key
+    momentum = record["momentum"]
+    for start, end, impulse in zip(momentum["start"], momentum["end"], momentum["impulse"], strict=True):
+        assert int(end) - int(start) == int(impulse)
+        assert isinstance(end, str)
+
+    series = finished.series
+    assert list(series["step"]) == [0, 10, 20]
+    for name in ("time", "fluid_velocity_x", "solid_velocity_y", "slip_y", "drag_y", "fluid_energy",
+                 "lowest_density_ratio", "momentum_defect_x", "digest"):
+        assert name in series
+    assert series["digest"][-1] == record["digest"]
+
+
+def test_quiet_prints_the_last_line_only(tmp_path: Path) -> None:
+    lines = called(Options(steps=20), tmp_path, "--quiet").stdout.splitlines()
+    assert len(lines) == 1
+    assert LAST_LINE.fullmatch(lines[0])
+
+
+def test_help_and_version() -> None:
+    for name in ("mappm", "mappm-reference"):
+        for words, expected in ((["run", "--help"], "--set"), (["--version"], name)):
+            finished = subprocess.run([program(name), *words], capture_output=True, text=True, check=True)
+            assert expected in finished.stdout
+
+
+def test_a_snapshot_opens_in_pyvista(tmp_path: Path) -> None:
+    finished = run(SCENE, tmp_path, Options(ranks=2, steps=20))
+    fluid = pyvista.read(finished.snapshots()[-1])
+    solids = pyvista.read(finished.snapshots("solids")[-1])
+    assert fluid.n_points == finished.record["particles"]
+    assert solids.n_points == finished.record["solids"]
+    assert np.all((fluid.points >= 0) & (fluid.points <= [1.0, 2.0, 0.0]))
+    pps = fluid["kind"] == 0
+    assert len(np.unique(fluid["id"][pps])) == pps.sum()
+    # The mean of the velocities in the picture is that of the series: two ways of the same numbers, equal to rounding.
+    assert fluid["velocity"][pps].mean(axis=0)[1] == pytest.approx(fluid_velocity(finished, 20), rel=1e-6)
+    assert np.allclose(solids["radius"], 0.11)
+
+
+def fluid_velocity(finished: Run, step: int) -> float:
+    series = run(SCENE, finished.folder / "sampled", Options(steps=step, overrides=("output.sample=10",))).series
+    return float(series["fluid_velocity_y"][-1])
+
+
+@pytest.mark.parametrize(("ranks", "number"), [(0, signal.SIGTERM), (1, signal.SIGINT), (2, signal.SIGTERM)])
+def test_a_signal_leaves_a_checkpoint_to_go_on_from(tmp_path: Path, ranks: int, number: signal.Signals) -> None:
+    endless = Options(ranks=ranks, steps=10_000_000, overrides=("output.sample=10",))
+    process = subprocess.Popen(
+        endless.command(SCENE, tmp_path), env=os.environ | MPI_ENVIRONMENT, stdout=subprocess.PIPE, text=True
+    )
+    until = time.monotonic() + 60
+    while not (tmp_path / "series.csv").exists() or len((tmp_path / "series.csv").read_text().splitlines()) < 4:
+        assert time.monotonic() < until
+        time.sleep(0.1)
+    process.send_signal(number)
+    stdout, _ = process.communicate(timeout=60)
+    record = json.loads((tmp_path / "run.json").read_text())
+    assert record["state"] == "stopped", stdout
+    (checkpoint,) = (tmp_path / "checkpoints").iterdir()
+    assert str(checkpoint) in stdout
+    goal = record["steps"] + 20
+    resumed = run(SCENE, tmp_path, Options(ranks=3, steps=goal, overrides=endless.overrides, resume=checkpoint))
+    through = run(SCENE, tmp_path / "through", Options(steps=goal, overrides=endless.overrides))
+    assert resumed.record["digest"] == through.record["digest"]
+
+
+def verification(*words: str) -> subprocess.CompletedProcess:
+    return subprocess.run([sys.executable, "-m", "verification", *words], cwd=ROOT, capture_output=True, text=True)
+
+
+def test_the_judge_lists_and_runs_cases(tmp_path: Path) -> None:
+    listed = verification("list")
+    assert listed.returncode == 0
+    assert {line.split()[0] for line in listed.stdout.splitlines()} >= {"gas_solid_small", "rest", "sphere_array"}
+    judged = verification("run", "rest", "--out", str(tmp_path), "--set", "run.steps=10")
+    assert judged.returncode == 0, judged.stderr
+    assert judged.stdout == "max(|v|) / c = 0 +- 0 (reference 0 +- 0, error 0, CORRECT)\n"
+    assert verification("run", "nothing").returncode != 0
+
+
+def test_compare_bits(tmp_path: Path) -> None:
+    finished = verification("compare-bits", str(SCENE), "--ranks", "1,2", "--steps", "20", "--every", "10")
+    assert finished.returncode == 0, finished.stderr
+    assert finished.stdout.startswith("equal at all 3 samples up to step 20, digest ")
+    assert finished.stdout.endswith(": serial reference; P=1; P=2\n")
