@@ -3,6 +3,7 @@
 import argparse
 import sys
 import tempfile
+import textwrap
 from pathlib import Path
 
 from verification.case import TIERS, CaseError, all_cases, find_case
@@ -13,7 +14,7 @@ from verification.solver import ROOT, Options, SolverError
 
 def list_cases() -> int:
     for case in all_cases():
-        print(f"{case.name:22} {case.tier:6} {case.cost:6g} s  {case.purpose}")
+        print(f"{case.name:20} {case.tier:6} {case.cost:6g} s  {textwrap.shorten(case.purpose, 90, placeholder=' ...')}")
     return 0
 
 

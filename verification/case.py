@@ -12,6 +12,10 @@
     uncertainty = 0.005             # of the reference, absolute
     source = "Sangani and Acrivos 1982, table 1"
     goal = 0.03                     # largest relative error that counts as correct
+
+    [[case.beside]]                 # measured and reported, without a verdict
+    label = "classic"
+    set = ["fluid.method=classic"]
 """
 
 import tomllib
@@ -38,6 +42,12 @@ class Observable:
 
 
 @dataclass(frozen=True)
+class Beside:
+    label: str
+    overrides: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Case:
     name: str
     file: Path
@@ -45,6 +55,7 @@ class Case:
     tier: str
     cost: float
     observables: tuple[Observable, ...]
+    beside: tuple[Beside, ...]
 
 
 def _entry(table: dict, key: str, kind: type | tuple[type, ...], where: str):
@@ -68,21 +79,28 @@ def _observable(table: dict, where: str) -> Observable:
     return Observable(**{key: _entry(table, key, kind, where) for key, kind in kinds.items()})
 
 
+def _beside(table: dict, where: str) -> Beside:
+    _only(table, ("label", "set"), where)
+    return Beside(_entry(table, "label", str, where), tuple(_entry(table, "set", list, where)))
+
+
 def read_case(file: Path) -> Case:
     """Throws CaseError."""
     table = tomllib.loads(file.read_text()).get("case")
     if table is None:
         raise CaseError(f"{file}: case: missing; add a table [case]")
     where = f"{file}: case"
-    _only(table, ("purpose", "tier", "cost", "observable"), where)
+    _only(table, ("purpose", "tier", "cost", "observable", "beside"), where)
     tier = _entry(table, "tier", str, where)
     if tier not in TIERS:
         raise CaseError(f"{where}.tier = {tier!r}: unknown; known are {', '.join(TIERS)}")
     observables = tuple(
         _observable(entry, f"{where}.observable[{i}]") for i, entry in enumerate(table.get("observable", []))
     )
+    beside = tuple(_beside(entry, f"{where}.beside[{i}]") for i, entry in enumerate(table.get("beside", [])))
     purpose = " ".join(_entry(table, "purpose", str, where).split())
-    return Case(file.parent.name, file, purpose, tier, _entry(table, "cost", (int, float), where), observables)
+    cost = _entry(table, "cost", (int, float), where)
+    return Case(file.parent.name, file, purpose, tier, cost, observables, beside)
 
 
 def all_cases() -> list[Case]:

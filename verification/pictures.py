@@ -29,7 +29,7 @@ def velocity_field(run: Run, file: Path, which: int = -1) -> None:
 
     speed = np.linalg.norm(fluid["velocity"] - fluid["velocity"].mean(axis=0), axis=1)
     unit = run.series.units["slip_x"]
-    title = "speed relative to the mean of the fluid" + (f" ({unit})" if unit else "")
+    title = "speed relative to the mean of the fluid" + (f" ({unit})" if unit else "") + "\n"
 
     bar = 0.16  # of the picture's height, for the scale
     size = (PIXELS, max(260, round(PIXELS * height / width / (1 - bar))))
@@ -40,9 +40,9 @@ def velocity_field(run: Run, file: Path, which: int = -1) -> None:
     spacing = (width * height / len(speed)) ** 0.5
     plotter.add_mesh(
         cloud, scalars=title, cmap="viridis", clim=[0.0, float(np.quantile(speed, 0.998))], style="points",
-        point_size=max(2.0, 1.3 * PIXELS * spacing / width), lighting=False,
-        scalar_bar_args={"position_x": 0.25, "position_y": 0.01, "width": 0.5, "height": 0.5 * bar, "color": "black",
-                         "title_font_size": 18, "label_font_size": 16, "fmt": "%.3g"},
+        point_size=max(2.0, 1.7 * PIXELS * spacing / width), lighting=False,
+        scalar_bar_args={"position_x": 0.3, "position_y": 0.01, "width": 0.4, "height": 0.8 * bar, "color": "black",
+                         "title_font_size": 20, "label_font_size": 18, "n_labels": 3, "fmt": "%.2g"},
     )
     for centre, radius in zip(flat(solids["points"]), solids["radius"], strict=True):
         for i in (-1, 0, 1):  # periodic images that reach into the box

@@ -10,13 +10,13 @@ from pathlib import Path
 
 import jinja2
 
-from verification.case import all_cases, find_case
+from verification.case import Beside, Case, all_cases, find_case
 from verification.charts import slip_and_drag
 from verification.compare import Comparison, compare_runs
-from verification.judge import CORRECT, Outcome, judge
+from verification.judge import CORRECT, Outcome, run_and_judge
 from verification.pictures import velocity_field
 from verification.progress import Progress
-from verification.solver import ROOT, Options, Run, run
+from verification.solver import ROOT, Options, Run
 
 SHOWN = "gas_solid_small"
 STEPS = {"quick": 20_000, "full": 60_000}  # of the long run
@@ -80,15 +80,31 @@ def _compare(progress: Progress, scene: Path, folder: Path) -> Comparison:
     )
 
 
-def _judged(progress: Progress, tier: str, folder: Path) -> list[tuple[str, Outcome]]:
+def _judged(progress: Progress, cases: list[Case], folder: Path) -> list[tuple[str, Outcome]]:
+    """Outcomes by the name of their case, failures first."""
     outcomes = []
-    for case in _judged_cases(tier):
+    for case in cases:
         with progress.stage(f"case {case.name}"):
-            outcomes += [(case.name, outcome) for outcome in judge(case, run(case.file, folder / case.name))]
-    return sorted(outcomes, key=lambda pair: pair[1].verdict == CORRECT)  # failures first
+            outcomes += [(case.name, outcome) for outcome in run_and_judge(case, folder / case.name)[1]]
+    return sorted(outcomes, key=lambda pair: pair[1].verdict == CORRECT)
 
 
-def _judged_cases(tier: str) -> list:
+def _beside(progress: Progress, cases: list[Case], folder: Path) -> list[tuple[str, Outcome]]:
+    """What the manifests ask to measure beside their case: reported as it is, without a verdict."""
+    measured = []
+    for case, beside in _pairs(cases):
+        name = f"{case.name}, {beside.label}"
+        with progress.stage(f"case {name}"):
+            options = Options(overrides=beside.overrides)
+            measured += [(name, outcome) for outcome in run_and_judge(case, folder / name, options)[1]]
+    return measured
+
+
+def _pairs(cases: list[Case]) -> list[tuple[Case, Beside]]:
+    return [(case, beside) for case in cases for beside in case.beside]
+
+
+def _judged_cases(tier: str) -> list[Case]:
     return [case for case in all_cases() if case.observables and (tier == "full" or case.tier == "quick")]
 
 
@@ -98,10 +114,12 @@ def write_report(tier: str, out: Path) -> int:
     shutil.rmtree(out, ignore_errors=True)
     runs = out / "runs"
     runs.mkdir(parents=True)
-    progress = Progress(stages=5 + len(_judged_cases(tier)))
+    cases = _judged_cases(tier)
+    progress = Progress(stages=5 + len(cases) + len(_pairs(cases)))
 
     comparison = _compare(progress, scene, runs / "digests")
-    outcomes = _judged(progress, tier, runs)
+    outcomes = _judged(progress, cases, runs)
+    beside = _beside(progress, cases, runs)
     shown = progress.run(scene, runs / SHOWN, Options(ranks=2, steps=STEPS[tier]), STEPS[tier], f"{SHOWN}, P=2")
     with progress.stage("pictures and page"):
         velocity_field(shown, out / "field.png")
@@ -117,6 +135,7 @@ def write_report(tier: str, out: Path) -> int:
             comparison=comparison,
             digest_rows=_digest_rows(comparison),
             outcomes=outcomes,
+            beside=beside,
             record=shown.record,
             samples=len(shown.series),
             ledger=ledger,

@@ -37,7 +37,7 @@ def read_table(path: Path) -> Table:
     for head, cells in zip(rows[0], zip(*rows[1:], strict=True), strict=True):
         name, _, unit = head.partition(" [")
         units[name] = unit.rstrip("]")
-        text = name == "digest" or name.startswith("momentum_defect")
+        text = name == "digest" or name.startswith(("momentum", "impulse"))
         columns[name] = np.array(cells, dtype=str if text else float)
     return Table(columns, units)
 

@@ -46,6 +46,8 @@ int run_command(int argc, char** argv, const Group& group, const std::string& pr
     return report_once(group, error.what(), exit_input_error);
   } catch (const RangeError& error) {
     return report_once(group, error.what(), exit_range_error);
+  } catch (const AgreedError& error) {
+    return report_once(group, std::string("defect: ") + error.what(), exit_defect);
   } catch (const std::exception& error) {
     fmt::print(stderr, "error: defect on process {}: {}\n", group.rank(), error.what());
     std::fflush(nullptr);

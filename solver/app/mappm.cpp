@@ -1,4 +1,6 @@
 // mappm: the parallel solver. It runs as one process, or as many under mpirun.
+#include <cstdio>
+#include <exception>
 #include <string>
 #include <utility>
 
@@ -39,7 +41,7 @@ void run_scene(const Scene& scene, const RunOptions& options, const DomainOption
 
 }  // namespace mappm
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   using namespace mappm;
   const Communicator communicator(argc, argv);
   watch_stop_signals();
@@ -47,9 +49,11 @@ int main(int argc, char** argv) {
   const auto add_options = [&](CLI::App& command) {
     command.add_option("--domains", domain_options.grid,
                        "domains along x, y(, z), as in 2x4 (default: slabs along the longest side)");
-    command.add_option("--threads", domain_options.engine.threads, "threads a process")->check(CLI::PositiveNumber);
-    command.add_option("--rebalance", domain_options.engine.rebalance,
-                       "steps between moves of the domain borders to the particle load (default: at start only)");
+    command.add_option("--threads", domain_options.engine.threads, "threads a process")->check(CLI::Range(1, 256));
+    command
+        .add_option("--rebalance", domain_options.engine.rebalance,
+                    "steps between moves of the domain borders to the particle load (default: at start only)")
+        ->check(not_negative);
   };
   return run_command(argc, argv, communicator, "mappm", add_options, [&](const RunOptions& options) {
     const Scene scene = together(communicator, [&] { return read_scene(options.scene, options.overrides); });
@@ -58,4 +62,7 @@ int main(int argc, char** argv) {
     else
       run_scene<3>(scene, options, domain_options, communicator);
   });
+} catch (const std::exception& error) {  // before the command line could be read
+  std::fprintf(stderr, "error: %s\n", error.what());
+  return mappm::exit_defect;
 }

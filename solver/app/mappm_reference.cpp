@@ -1,4 +1,6 @@
 // mappm-reference: the serial solver, another program for the same scenes.
+#include <cstdio>
+#include <exception>
 #include <map>
 #include <string>
 #include <utility>
@@ -28,7 +30,7 @@ void run_scene(const Scene& scene, const RunOptions& options, Neighbours neighbo
 
 }  // namespace mappm
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   using namespace mappm;
   const SingleGroup group;
   watch_stop_signals();
@@ -46,4 +48,7 @@ int main(int argc, char** argv) {
     else
       run_scene<3>(scene, options, neighbours, group);
   });
+} catch (const std::exception& error) {  // before the command line could be read
+  std::fprintf(stderr, "error: %s\n", error.what());
+  return mappm::exit_defect;
 }

@@ -21,7 +21,7 @@ struct RunOptions {
   /// The options that a resumed run must be given again.
   std::string repeated() const {
     std::string text;
-    for (const std::string& change : overrides) text += " --set " + change;
+    for (const std::string& change : overrides) text += " --set '" + change + "'";
     return out.empty() ? text : text + " --out " + out;
   }
 
@@ -29,6 +29,9 @@ struct RunOptions {
     return out.empty() ? std::filesystem::path("out") / scene_name : std::filesystem::path(out);
   }
 };
+
+/// Numbers without sign read "-5" as a very large one; this refuses it.
+extern const CLI::Validator not_negative;
 
 /// Adds the options above to the command `run`.
 void add_run_options(CLI::App& command, RunOptions& options);

@@ -23,6 +23,12 @@ class InputError : public std::runtime_error {
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
 };
 
+/// A defect that all processes have learned of: reported once.
+class AgreedError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// A value that left its range during a run.
 class RangeError : public std::runtime_error {
  public:

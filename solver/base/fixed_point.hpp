@@ -30,7 +30,8 @@ inline constexpr double rounding_constant = 0x1.8p52;
 /// Rounds x (|x| < 2^51) to the nearest integer, ties to even, by the bits of x + 1.5 2^52. Lanes have the same
 /// function with the same result (base/lanes.hpp). Outside the range the result is at least 2^51 in magnitude.
 inline std::int64_t to_fixed(double x) {
-  return std::bit_cast<std::int64_t>(x + rounding_constant) - std::bit_cast<std::int64_t>(rounding_constant);
+  const std::uint64_t bits = std::bit_cast<std::uint64_t>(x + rounding_constant);
+  return static_cast<std::int64_t>(bits - std::bit_cast<std::uint64_t>(rounding_constant));
 }
 
 /// Rounds x to the nearest integer, for |x| < 2^126: sums over a solid are longer than one word.

@@ -226,7 +226,7 @@ Checkpoint<D> read_checkpoint(const std::string& path, const std::string& scene_
     stored = {file.number_attribute("/", "digest"), file.number_attribute("/", "ledger_hash")};
     const auto ledger_words = [&](const std::string& name) {
       auto words = file.attribute<std::uint64_t>("/", name);
-      if (words.size() != 2 * D) refuse(path, "is damaged: " + name);
+      if (words.size() != std::size_t{2 * D}) refuse(path, "is damaged: " + name);
       return words;
     };
     WordReader{ledger_words("start_momentum").data()}(read.state.start_momentum);

@@ -50,7 +50,18 @@ bool first_sound(const std::vector<fs::path>& paths, const std::string& scene_te
 /// Where the checkpoints of `from` lie: in it, or in its folder "checkpoints".
 fs::path folder_of(const fs::path& from) {
   const fs::path inner = from / checkpoint_folder_name;
-  return fs::is_directory(inner) ? inner : from;
+  std::error_code failed;
+  return fs::is_directory(inner, failed) ? inner : from;
+}
+
+/// Removes what a killed run left half written.
+void remove_partial(const fs::path& folder) {
+  const std::string ending = partial_name(name_ending).string();
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(folder, failed)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(name_prefix) && name.ends_with(ending)) fs::remove(entry.path(), failed);
+  }
 }
 
 }  // namespace
@@ -65,6 +76,7 @@ std::vector<fs::path> list_checkpoints(const fs::path& folder) {
   }
   std::sort(found.rbegin(), found.rend());
   std::vector<fs::path> paths;
+  paths.reserve(found.size());
   for (auto& [time, path] : found) paths.push_back(std::move(path));
   return paths;
 }
@@ -72,7 +84,7 @@ std::vector<fs::path> list_checkpoints(const fs::path& folder) {
 template <int D>
 fs::path save_checkpoint(const fs::path& folder, const std::string& scene_text, const State<D>& state,
                          std::uint64_t sampled_step, const Group& group) {
-  const fs::path path = folder / fmt::format("{}{:09}{}", name_prefix, state.step, name_ending);
+  fs::path path = folder / fmt::format("{}{:09}{}", name_prefix, state.step, name_ending);
   on_first(group, [&] { make_folder(folder); });
   try {
     write_checkpoint(partial_name(path).string(), scene_text, state, sampled_step, group);
@@ -88,6 +100,7 @@ fs::path save_checkpoint(const fs::path& folder, const std::string& scene_text, 
     const std::vector<fs::path> all = list_checkpoints(folder);
     std::error_code ignored;
     for (std::size_t k = kept_checkpoints; k < all.size(); ++k) fs::remove(all[k], ignored);
+    remove_partial(folder);
   });
   return path;
 }
@@ -97,7 +110,8 @@ FoundCheckpoint<D> find_checkpoint(const fs::path& from, const std::string& scen
                                    const Region<D>& region, const Group& group) {
   FoundCheckpoint<D> found;
   std::string refused;
-  if (!fs::is_directory(from)) {
+  std::error_code failed;
+  if (!fs::is_directory(from, failed)) {
     if (first_sound<D>({from}, scene_text, model, region, group, refused, found)) return found;
     std::string ignored;
     std::vector<fs::path> others = agreed_list(from.has_parent_path() ? from.parent_path() : ".", group);

@@ -217,9 +217,13 @@ std::uint64_t Hdf5Reader::row_count(const std::string& name) const {
 template <class T>
 std::vector<T> Hdf5Reader::rows(const std::string& name, std::uint64_t first, std::uint64_t count,
                                 std::size_t width) const {
-  std::vector<T> values(count * (width == 0 ? 1 : width));
+  const std::uint64_t columns = width == 0 ? 1 : width;
+  const std::uint64_t present = row_count(name);
+  if (first > present || count > present - first) refuse("data set '" + name + "' is too short");
+  if (count > std::filesystem::file_size(path_) / (columns * sizeof(T)))
+    refuse("data set '" + name + "' claims more rows than the file can hold");
+  std::vector<T> values(count * columns);
   if (count == 0) return values;
-  if (first + count > row_count(name)) refuse("data set '" + name + "' is too short");
   const Hdf5Handle data(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
   const Hdf5Handle in_file(H5Dget_space(data.id()), H5Sclose);
   const int expected = width == 0 ? 1 : 2;

@@ -31,10 +31,11 @@ nlohmann::ordered_json decimal_strings(const std::vector<Int128>& values) {
 }  // namespace
 
 std::vector<std::string> term_names(const Terms& terms) {
-  std::vector<std::string> names{"fluid"};
+  std::vector<std::string> names;
   const auto add = [&](bool active, const char* name) {
     if (active) names.emplace_back(name);
   };
+  add(terms.fluid, "fluid");
   add(terms.transport, "transport velocity");
   add(terms.extrapolated, "extrapolated no-slip");
   add(terms.body_force, "body force");

@@ -54,6 +54,8 @@ Columns series_columns(const Model<D>& model, const UnitNames& units, const Tota
   }
   columns.add("lowest_density_ratio", "", totals.lowest_density / model.rest_density);
   columns.add("highest_density_ratio", "", totals.highest_density / model.rest_density);
+  columns.add("momentum", "", totals.momentum);
+  columns.add("impulse", "", totals.outside_impulse);
   columns.add("momentum_defect", "", momentum_defect(totals, start_momentum));
   columns.add("digest", "", digest_text(totals.digest()));
   return columns;

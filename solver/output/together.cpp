@@ -32,7 +32,7 @@ void agree(const Group& group, const std::string& failure) {
     case range_kind:
       throw RangeError(message);
     default:
-      throw std::runtime_error(message);
+      throw AgreedError(message);
   }
 }
 

@@ -20,7 +20,7 @@ std::string describe_failure(const std::exception& error);
 void agree(const Group& group, const std::string& failure);
 
 /// Collective. Does `work` on every process and returns its result. If it threw on any, all throw the error of the
-/// lowest rank that failed, with the same type (InputError, RangeError or std::runtime_error) and text.
+/// lowest rank that failed, with the same type (InputError or RangeError; any other becomes an AgreedError) and text.
 template <class Work>
 auto together(const Group& group, Work&& work) {
   using Result = std::invoke_result_t<Work>;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
+#include <stdexcept>
 #include <utility>
 
 namespace mappm {
@@ -12,6 +14,13 @@ namespace mappm {
 namespace {
 
 constexpr int exchange_tag = 1;
+
+/// MPI counts in int.
+int count_of(const Buffer& buffer) {
+  if (buffer.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw std::length_error("a message to one process exceeds 2 GiB; use more processes");
+  return static_cast<int>(buffer.size());
+}
 
 /// The parts of 128-bit integers that can be added as 64-bit ones: three pieces of at most 43 bits.
 constexpr int piece_bits = 43;
@@ -107,7 +116,7 @@ void Communicator::exchange(std::span<const int> partners, std::span<Buffer> out
       std::swap(out[n], in[n]);
       continue;
     }
-    MPI_Isend(out[n].data(), static_cast<int>(out[n].size()), MPI_BYTE, partners[n], exchange_tag, MPI_COMM_WORLD,
+    MPI_Isend(out[n].data(), count_of(out[n]), MPI_BYTE, partners[n], exchange_tag, MPI_COMM_WORLD,
               &requests.emplace_back());
   }
   for (std::size_t n = 0; n < partners.size(); ++n) {

@@ -179,13 +179,6 @@ std::vector<Image<D>> Domains<D>::images(int rank) const {
 }
 
 template <int D>
-double solid_margin(const Model<D>& model) {
-  if (!model.terms.solids) return 0.0;
-  // A solid and what it moves in a step must be seen wherever one of its FPs is a neighbour, or another solid touches.
-  return std::max(model.largest_reach + 1.0, 2.0 * model.largest_contact_reach) + 0.25;
-}
-
-template <int D>
 Domains<D> make_domains(const Model<D>& model, int processes, const std::string& grid) {
   Vec<D, int> counts;
   if (grid.empty()) {
@@ -232,7 +225,6 @@ Domains<D> balanced(const Model<D>& model, const Domains<D>& domains,
 
 #define MAPPM_INSTANTIATE(D)                                                          \
   template class Domains<D>;                                                          \
-  template double solid_margin<D>(const Model<D>&);                                   \
   template Domains<D> make_domains<D>(const Model<D>&, int, const std::string&);      \
   template Domains<D> balanced<D>(const Model<D>&, const Domains<D>&,                 \
                                   const std::array<std::vector<std::uint64_t>, D>&);

@@ -46,10 +46,6 @@ class Domains {
   std::array<std::vector<double>, D> cuts_;
 };
 
-/// Width of the margin in which solids are copied, in rcut: L for the FPs, 2R for contacts.
-template <int D>
-double solid_margin(const Model<D>& model);
-
 /// `grid`: "2x4" (domains along x, y ...), or empty for slabs along the longest side. Throws InputError for a grid
 /// that does not match the number of processes, or domains too small for rcut or for the solids (the paper's h > 2R).
 template <int D>

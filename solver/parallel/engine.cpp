@@ -214,8 +214,11 @@ void ParallelEngine<D>::move_solids(const std::vector<HomeReport<D>>& from_other
       });
       add_face_contacts(model_, one, loads_[a]);
     }
-  for (std::size_t a = 0; a < state_.solids.size(); ++a)
-    finish_step(model_, state_.step, state_.solids[a], std::move(loads_[a]), state_.outside_impulse);
+  for (std::size_t a = 0; a < state_.solids.size(); ++a) {
+    const std::string fault =
+        finish_step(model_, state_.step, state_.solids[a], std::move(loads_[a]), state_.outside_impulse);
+    if (range_error_.empty()) range_error_ = fault;
+  }
 }
 
 /// Moves the owned PPs, which fill the inner cells, and drops the ghosts.

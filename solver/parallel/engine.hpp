@@ -22,7 +22,7 @@ struct ParallelOptions {
 template <int D>
 class ParallelEngine {
  public:
-  /// `state`: this process' share under `domains`. With `balance` the borders are first moved to the particle load.
+  /// `state`: this process' share under `domains`. The borders are first moved to the particle load.
   ParallelEngine(const Model<D>& model, const Domains<D>& domains, const Communicator& communicator, State<D>&& state,
                  const ParallelOptions& options);
 

@@ -33,7 +33,8 @@ class CellLevels {
 
   void clear() {
     for (Level& level : levels_) {
-      for (auto& cell : level.cells) cell.clear();
+      for (const std::size_t cell : level.used) level.cells[cell].clear();
+      level.used.clear();
       level.largest_radius = 0.0;
     }
   }
@@ -42,7 +43,9 @@ class CellLevels {
     Level& level = levels_[static_cast<std::size_t>(level_of(radius))];
     Vec<D, int> cell;
     for (int axis = 0; axis < D; ++axis) cell[axis] = coordinate(level, axis, x[axis]);
-    level.cells[index(level, cell)].push_back(body);
+    const std::size_t place = index(level, cell);
+    if (level.cells[place].empty()) level.used.push_back(place);
+    level.cells[place].push_back(body);
     level.largest_radius = std::max(level.largest_radius, radius);
   }
 
@@ -69,22 +72,31 @@ class CellLevels {
   }
 
  private:
+  static constexpr double most_cells = 1 << 18;
+
   struct Level {
     double mesh = 0.0;
     double largest_radius = 0.0;  // of the bodies registered now
     Vec<D, int> count;
     std::vector<std::vector<std::uint32_t>> cells;
+    std::vector<std::size_t> used;  // cells that hold bodies now
   };
 
+  /// Cells as wide as the mesh, or wider where there would be more than `most_cells` of them: a body may be registered in
+  /// a cell of any width, only the visits grow.
   Level make_level(double mesh) const {
     Level level;
     level.mesh = mesh;
-    std::size_t cells = 1;
-    for (int axis = 0; axis < D; ++axis) {
-      level.count[axis] = std::max(1, static_cast<int>(std::ceil((high_[axis] - low_[axis]) / mesh)));
-      cells *= static_cast<std::size_t>(level.count[axis]);
+    double cells = 0.0;
+    for (double width = mesh; cells == 0.0 || cells > most_cells; width *= 2.0) {
+      cells = 1.0;
+      for (int axis = 0; axis < D; ++axis) {
+        const double along = std::max(1.0, std::ceil((high_[axis] - low_[axis]) / width));
+        level.count[axis] = static_cast<int>(std::min(along, 2.0 * most_cells));
+        cells *= along;
+      }
     }
-    level.cells.resize(cells);
+    level.cells.resize(static_cast<std::size_t>(cells));
     return level;
   }
   int coordinate(const Level& level, int axis, double x) const {

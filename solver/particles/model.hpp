@@ -2,6 +2,7 @@
 // Internal units: length rcut, mass of one PP, velocity c (the isothermal sound speed); time is then rcut / c.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct WallFace {
   int axis = 0;
   double sign = 1.0;        // outward normal: +1 or -1 along the axis
   double x = 0.0;           // position quanta
+  double thickness = 0.0;   // of the wall behind it, rcut
   Vec<D, double> velocity;  // c
 };
 
@@ -64,6 +66,14 @@ struct Model {
   double largest_contact_reach = 0.0; // over shapes that take part in contact, rcut
   UnitScale units;
 };
+
+/// Width of the margin of a domain in which solids are copied, rcut: a solid, and what it moves in a step, must be seen
+/// wherever one of its FPs is a neighbour (the paper's L), or another solid touches it (2R). No box side may be shorter.
+template <int D>
+double solid_margin(const Model<D>& model) {
+  if (!model.terms.solids) return 0.0;
+  return std::max(model.largest_reach + 1.0, 2.0 * model.largest_contact_reach) + largest_displacement;
+}
 
 /// Calls f(Kernel{}, bool_constant<transport>{}) for the model's choice: the choice is made outside the loops.
 template <int D, class F>

@@ -59,6 +59,7 @@ void add_contacts(const Model<D>& model, const SolidInStep<D>& one, const SolidI
   const bool first = one.solid->id < other.solid->id;
   const SolidInStep<D>& low = first ? one : other;
   const SolidInStep<D>& high = first ? other : one;
+  if (inverse_mass(low) + inverse_mass(high) == 0.0) return;  // neither can be moved
   const Vec<D, double> centres = vector_between(model, low.solid->x, high.solid->x);
   const double reach = low.shape->reach + high.shape->reach;
   if (dot(centres, centres) >= reach * reach) return;
@@ -94,6 +95,7 @@ void add_contacts(const Model<D>& model, const SolidInStep<D>& one, const SolidI
 
 template <int D>
 void add_face_contacts(const Model<D>& model, const SolidInStep<D>& one, SolidLoad<D>& load) {
+  if (inverse_mass(one) == 0.0) return;  // neither can be moved
   for (const WallFace<D>& face : model.faces)
     for (std::uint32_t a = 0; a < one.shape->balls.size(); ++a) {
       const Ball<D>& ball = one.shape->balls[a];
@@ -101,7 +103,8 @@ void add_face_contacts(const Model<D>& model, const SolidInStep<D>& one, SolidLo
       const int axis = face.axis;
       const double centre = nearest_difference(one.solid->x[axis], face.x) * model.pair.length[axis] + offset[axis];
       const double height = face.sign * centre;
-      if (height >= ball.contact_radius || height <= -ball.contact_radius) continue;
+      // Deeper than the wall's middle the ball is nearer to the other face, which pushes it the other way.
+      if (height >= ball.contact_radius || height <= -0.5 * face.thickness) continue;
       ContactPair<D> pair;
       pair.normal = {};
       pair.normal[axis] = face.sign;
@@ -120,7 +123,7 @@ void add_face_contacts(const Model<D>& model, const SolidInStep<D>& one, SolidLo
 }
 
 template <int D>
-void finish_step(const Model<D>& model, std::uint64_t step, Solid<D>& solid, SolidLoad<D>&& load,
+std::string finish_step(const Model<D>& model, std::uint64_t step, Solid<D>& solid, SolidLoad<D>&& load,
                  Vec<D, Int128>& outside_impulse) {
   const Shape<D>& shape = model.shapes[solid.shape];
   solid.fluid_impulse += load.fluid.linear;
@@ -145,7 +148,21 @@ void finish_step(const Model<D>& model, std::uint64_t step, Solid<D>& solid, Sol
         outside_impulse[axis] += kick;
       }
   }
-  advance(solid, shape, total, model.dt, model.pair.length);
+  if (advance(solid, shape, total, model.dt, model.pair.length) != RangeFault::none) {
+    const RigidVelocity<D> velocity = rigid_velocity(solid, shape);
+    return fmt::format("step {}: solid {}: a point of it moves more than rcut/4 in one step (velocity {:.3g} c, rim {:.3g} "
+                       "c before it); the step is too long or the contact too stiff",
+                       step, solid.id, square_root(dot(velocity.linear, velocity.linear)),
+                       square_root(dot(velocity.angular, velocity.angular)) * shape.reach);
+  }
+  for (std::size_t k = 0; k < solid.density.size(); ++k) {
+    const double ratio = solid.density[k] / model.rest_density;
+    if (!(ratio >= lowest_density_ratio && ratio <= highest_density_ratio))
+      return fmt::format("step {}: solid {}: density at its frozen particle {} is {:.3g} times rest, outside {} to {}; the "
+                         "fluid tears or collapses there: raise the sound speed or resolve the gap",
+                         step, solid.id, k, ratio, lowest_density_ratio, highest_density_ratio);
+  }
+  return {};
 }
 
 template <int D>
@@ -153,12 +170,12 @@ ParticleStep<D> particle_step(const Model<D>& model, std::uint64_t step) {
   ParticleStep<D> constants;
   for (int axis = 0; axis < D; ++axis) {
     constants.drift[axis] = model.dt / model.pair.length[axis];
-    constants.largest_drift[axis] = 0.25 / model.pair.length[axis];
+    constants.largest_drift[axis] = largest_displacement / model.pair.length[axis];
   }
   constants.kick = model.terms.body_force && step >= model.relax ? model.fluid_kick : Vec<D, double>{};
   constants.self_density = model.self_density;
-  constants.lowest_density = 0.1 * model.rest_density;
-  constants.highest_density = 10.0 * model.rest_density;
+  constants.lowest_density = lowest_density_ratio * model.rest_density;
+  constants.highest_density = highest_density_ratio * model.rest_density;
   return constants;
 }
 
@@ -174,6 +191,10 @@ std::string range_message(RangeFault fault, std::uint64_t step, std::uint64_t id
                          "particles overlap or the step is too long",
                          step, id, largest * velocity_quantum);
     }
+    case RangeFault::velocity:
+      return fmt::format("step {}: particle {}: velocity beyond 32 c, the largest that is held exactly ({:.3g} c before "
+                         "the step); the step is too long",
+                         step, id, square_root(dot(v, v)));
     case RangeFault::displacement:
       return fmt::format("step {}: particle {}: moves more than rcut/4 in one step (velocity {:.3g} c before it); "
                          "the step is too long or the sound speed too low",
@@ -190,7 +211,7 @@ std::string range_message(RangeFault fault, std::uint64_t step, std::uint64_t id
 #define MAPPM_INSTANTIATE(D)                                                                                        \
   template void add_contacts<D>(const Model<D>&, const SolidInStep<D>&, const SolidInStep<D>&, SolidLoad<D>&);      \
   template void add_face_contacts<D>(const Model<D>&, const SolidInStep<D>&, SolidLoad<D>&);                        \
-  template void finish_step<D>(const Model<D>&, std::uint64_t, Solid<D>&, SolidLoad<D>&&, Vec<D, Int128>&);         \
+  template std::string finish_step<D>(const Model<D>&, std::uint64_t, Solid<D>&, SolidLoad<D>&&, Vec<D, Int128>&);  \
   template ParticleStep<D> particle_step<D>(const Model<D>&, std::uint64_t);                                        \
   template std::string range_message<D>(RangeFault, std::uint64_t, std::uint64_t, const Vec<D, double>&,            \
                                         const NeighbourSums<D>&);

@@ -43,10 +43,11 @@ template <int D>
 void add_face_contacts(const Model<D>& model, const SolidInStep<D>& one, SolidLoad<D>& load);
 
 /// Ends the step of a solid that this process owns: body force, kick, drift. What a solid that is not free receives
-/// goes to the outside; what walls and body forces give comes from it.
+/// goes to the outside; what walls and body forces give comes from it. Returns an empty text, or what left its range: a
+/// solid that would move too far stays where it is, as its next owner might not be a neighbour.
 template <int D>
-void finish_step(const Model<D>& model, std::uint64_t step, Solid<D>& solid, SolidLoad<D>&& load,
-                 Vec<D, Int128>& outside_impulse);
+std::string finish_step(const Model<D>& model, std::uint64_t step, Solid<D>& solid, SolidLoad<D>&& load,
+                        Vec<D, Int128>& outside_impulse);
 
 /// Constants of the step of a PP; the body force acts from step `model.relax` on.
 template <int D>

@@ -6,6 +6,7 @@
 
 #include "base/fixed_point.hpp"
 #include "base/vec.hpp"
+#include "physics/range_fault.hpp"
 
 namespace mappm {
 
@@ -22,12 +23,10 @@ template <int D>
 struct ParticleStep {
   Vec<D, double> drift;              // dt / length of a position quantum: velocity (c) to displacement (quanta)
   Vec<D, double> kick;               // impulse of the body force (c, PP mass 1)
-  Vec<D, double> largest_drift;      // a quarter of rcut, in quanta
+  Vec<D, double> largest_drift;      // `largest_displacement`, in quanta
   double self_density;
   double lowest_density, highest_density;
 };
-
-enum class RangeFault { none, impulse, displacement, density };
 
 /// v += impulse + kick, x += v dt + shift, density = sum: exact but for the rounding of v dt to a quantum. The position
 /// is not wrapped. On a fault nothing is changed.
@@ -39,6 +38,7 @@ RangeFault advance(Vec<D, double>& x, Vec<D, double>& v, double& density, const 
   for (int axis = 0; axis < D; ++axis) {
     if (sums.impulse[axis] >= largest_impulse || sums.impulse[axis] <= -largest_impulse) return RangeFault::impulse;
     new_v[axis] = v[axis] + (static_cast<double>(sums.impulse[axis]) * velocity_quantum + step.kick[axis]);
+    if (!(std::fabs(new_v[axis]) < exact_quanta * velocity_quantum)) return RangeFault::velocity;
     const double drift = new_v[axis] * step.drift[axis];
     const double moved = static_cast<double>(to_fixed(drift)) + static_cast<double>(sums.shift[axis]);
     if (!(std::fabs(moved) <= step.largest_drift[axis])) return RangeFault::displacement;

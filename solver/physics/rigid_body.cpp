@@ -1,5 +1,7 @@
 #include "physics/rigid_body.hpp"
 
+#include <cmath>
+
 namespace mappm {
 
 namespace {
@@ -59,19 +61,28 @@ AngularVec<D, Int128> torque_impulse(const Vec<D, double>& lever, const Vec<D, d
 }
 
 template <int D>
-void advance(Solid<D>& solid, const Shape<D>& shape, const SolidImpulse<D>& impulse, double dt,
+RangeFault advance(Solid<D>& solid, const Shape<D>& shape, const SolidImpulse<D>& impulse, double dt,
              const Vec<D, double>& length) {
-  if (solid.motion == SolidMotion::fixed) return;
+  if (solid.motion == SolidMotion::fixed) return RangeFault::none;
+  const auto momentum = solid.momentum;
+  const auto angular_momentum = solid.angular_momentum;
   if (solid.motion == SolidMotion::free) {
     solid.momentum += impulse.linear;
     if (shape.rotates) solid.angular_momentum += impulse.angular;
   }
   const RigidVelocity<D> velocity = rigid_velocity(solid, shape);
+  const double rim_speed = std::sqrt(dot(velocity.angular, velocity.angular)) * shape.reach;
+  if (!((std::sqrt(dot(velocity.linear, velocity.linear)) + rim_speed) * dt <= largest_displacement)) {
+    solid.momentum = momentum;
+    solid.angular_momentum = angular_momentum;
+    return RangeFault::displacement;
+  }
   for (int axis = 0; axis < D; ++axis) {
     const double drift = static_cast<double>(to_fixed(velocity.linear[axis] * dt / length[axis]));
     solid.x[axis] = wrap_position(solid.x[axis] + drift);
   }
   if (shape.rotates) solid.orientation = turn(solid.orientation, dt * velocity.angular);
+  return RangeFault::none;
 }
 
 template RigidVelocity<2> rigid_velocity(const Solid<2>&, const Shape<2>&);
@@ -82,7 +93,7 @@ template PlacedFrozen<3> place(const Solid<3>&, const RigidVelocity<3>&, const F
                                const Vec<3, double>&);
 template AngularVec<2, Int128> torque_impulse<2>(const Vec<2, double>&, const Vec<2, double>&);
 template AngularVec<3, Int128> torque_impulse<3>(const Vec<3, double>&, const Vec<3, double>&);
-template void advance(Solid<2>&, const Shape<2>&, const SolidImpulse<2>&, double, const Vec<2, double>&);
-template void advance(Solid<3>&, const Shape<3>&, const SolidImpulse<3>&, double, const Vec<3, double>&);
+template RangeFault advance(Solid<2>&, const Shape<2>&, const SolidImpulse<2>&, double, const Vec<2, double>&);
+template RangeFault advance(Solid<3>&, const Shape<3>&, const SolidImpulse<3>&, double, const Vec<3, double>&);
 
 }  // namespace mappm

@@ -7,6 +7,7 @@
 #include "base/fixed_point.hpp"
 #include "base/rotation.hpp"
 #include "base/vec.hpp"
+#include "physics/range_fault.hpp"
 
 namespace mappm {
 
@@ -101,9 +102,10 @@ template <int D>
 AngularVec<D, Int128> torque_impulse(const Vec<D, double>& lever, const Vec<D, double>& impulse);
 
 /// Kick and drift of one solid over `dt` (internal units): momentum first, then position by the new velocity.
-/// A fixed solid keeps all, a moving one drifts with its constant momentum. Positions are wrapped into the box.
+/// A fixed solid keeps all, a moving one drifts with its constant momentum. Positions are wrapped into the box. A solid
+/// any point of which would move more than `largest_displacement` is left as it was: RangeFault::displacement.
 template <int D>
-void advance(Solid<D>& solid, const Shape<D>& shape, const SolidImpulse<D>& impulse, double dt,
+RangeFault advance(Solid<D>& solid, const Shape<D>& shape, const SolidImpulse<D>& impulse, double dt,
              const Vec<D, double>& length);
 
 }  // namespace mappm

@@ -12,6 +12,8 @@ namespace {
 
 using Shape = BodyScene::Shape;
 
+constexpr std::size_t most_solids = 10'000'000;  // of one [[body]]
+
 Shape read_shape(const Fields& table) {
   const bool plane = table.source().dimension == 2;
   const std::string shape = table.word("shape");
@@ -44,10 +46,13 @@ std::vector<BallScene> read_composite(const Fields& table) {
 /// An evenly spaced matrix over the box, by default with a margin of half a spacing.
 std::vector<Triple> read_array(const Fields& table, const Scene& scene) {
   const Triple count = table.vector("count", Quantity::plain);
+  double solids = 1.0;
   Triple spacing{}, offset{};
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimension); ++axis) {
     if (count[axis] < 1.0 || count[axis] != static_cast<double>(static_cast<std::int64_t>(count[axis])))
       table.fail("count", "must be whole numbers of at least 1, one per axis");
+    solids *= count[axis];
+    if (solids > static_cast<double>(most_solids)) table.fail("count", fmt::format("makes more than {} solids", most_solids));
     spacing[axis] = scene.box[axis] / count[axis];
     offset[axis] = 0.5 * spacing[axis];
   }
@@ -71,6 +76,7 @@ std::optional<Packing> read_random(const Fields& body, std::size_t index) {
   packing.seed = table->count("seed");
   packing.gap = table->number("gap", Quantity::length, Sign::not_negative, 0.0);
   if (packing.count == 0) table->fail("count", "must be at least 1; write the number of solids");
+  if (packing.count > most_solids) table->fail("count", fmt::format("must be at most {}", most_solids));
   table->finish();
   return packing;
 }

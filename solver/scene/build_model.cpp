@@ -199,7 +199,7 @@ BuiltModel<D> make_model(const Scene& scene) {
   model.terms = find_terms<D>(scene, matter);
   const Triple on_solids = solid_acceleration(scene, matter);
   model.units.velocity = sound_speed(scene, matter, on_solids);
-  check_velocities(scene, model.units.velocity);
+  check_velocities(scene, model);
   model.faces = wall_faces(scene, model);
   if (model.terms.contact) model.contact = make_contact<D>(scene, model.units);
   for (const Shape<D>& shape : model.shapes) {
@@ -207,6 +207,7 @@ BuiltModel<D> make_model(const Scene& scene) {
     if (model.terms.contact && !shape.balls.empty())
       model.largest_contact_reach = std::max(model.largest_contact_reach, shape.reach);
   }
+  check_margin(scene, model);
   const StepLimits limits = find_limits(scene, model, matter, on_solids);
   const double step = scene.run.step > 0.0 ? scene.run.step : scene.run.step_factor * limits.smallest();
   check_step(scene, step, limits);

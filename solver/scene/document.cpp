@@ -82,6 +82,8 @@ void apply_override(toml::table& tree, const std::string& text) {
   const std::string path = trimmed(text.substr(0, sign));
   const std::string value = trimmed(text.substr(sign + 1));
   const std::vector<std::string> parts = split(path);
+  if (parts.empty() || std::count(parts.begin(), parts.end(), "") > 0)
+    fail(text, "", "has an empty key; write --set key.path=value");
   toml::node* parent = &tree;
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) parent = &child(*parent, parts[i], path, value);
   set_value(*parent, parts.back(), path, value);

@@ -46,6 +46,36 @@ double largest_declared_speed(const Scene& scene) {
   return largest;
 }
 
+namespace {
+
+/// A solid sees another through one periodic image only if both together reach less than half a box.
+template <int D>
+void check_images(const Scene& scene, const Model<D>& model) {
+  std::vector<double> reaches;  // of every solid that touches others, rcut
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (!is_wall(scene.bodies[i])) reaches.insert(reaches.end(), scene.bodies[i].positions.size(), model.shapes[i].reach);
+  std::sort(reaches.rbegin(), reaches.rend());
+  const double side = *std::min_element(scene.box.begin(), scene.box.begin() + D);
+  if (reaches.size() > 1 && (reaches[0] + reaches[1]) * scene.fluid.cutoff > 0.5 * side)
+    throw InputError(scene.file, "box.size", fmt::format("{}", side),
+                     fmt::format("the two largest solids could touch through two periodic images; with [contact] it must "
+                                 "be at least {:.6g}",
+                                 2.0 * (reaches[0] + reaches[1]) * scene.fluid.cutoff));
+}
+
+}  // namespace
+
+template <int D>
+void check_margin(const Scene& scene, const Model<D>& model) {
+  if (model.terms.contact) check_images(scene, model);
+  const double needed = solid_margin(model) * scene.fluid.cutoff;
+  for (int axis = 0; axis < D; ++axis)
+    if (const double side = scene.box[static_cast<std::size_t>(axis)]; side < needed)
+      throw InputError(scene.file, "box.size", fmt::format("{}", side),
+                       fmt::format("too small for its solids and the reach of their forces; it must be at least {:.6g}",
+                                   needed));
+}
+
 template <int D>
 void check_box(const Scene& scene, const Lattice<D>& lattice) {
   double nodes = 1.0;
@@ -95,8 +125,14 @@ void check_solids(const Scene& scene, const Model<D>& model) {
   check_overlaps(scene);
 }
 
-void check_velocities(const Scene& scene, double sound_speed) {
-  const double speed = largest_declared_speed(scene);
+template <int D>
+void check_velocities(const Scene& scene, const Model<D>& model) {
+  const double sound_speed = model.units.velocity;
+  double speed = largest_declared_speed(scene);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    for (std::size_t n = 0; n < scene.bodies[i].angular_velocities.size(); ++n)
+      speed = std::max(speed, norm(scene.bodies[i].velocities[n]) + norm(scene.bodies[i].angular_velocities[n]) *
+                                                                        model.shapes[i].reach * scene.fluid.cutoff);
   if (speed >= sound_speed)
     throw InputError(scene.file, "fluid.sound_speed", fmt::format("{:.6g}", sound_speed),
                      fmt::format("is not above the largest declared speed {:.6g}; ten times that is usual", speed));
@@ -155,6 +191,10 @@ std::vector<std::string> scene_warnings(const Scene& scene, const Model<D>& mode
   return lines;
 }
 
+template void check_margin(const Scene&, const Model<2>&);
+template void check_margin(const Scene&, const Model<3>&);
+template void check_velocities(const Scene&, const Model<2>&);
+template void check_velocities(const Scene&, const Model<3>&);
 template void check_box(const Scene&, const Lattice<2>&);
 template void check_box(const Scene&, const Lattice<3>&);
 template void check_solids(const Scene&, const Model<2>&);

@@ -20,7 +20,12 @@ template <int D>
 void check_solids(const Scene& scene, const Model<D>& model);
 
 /// Declared velocities against the sound speed.
-void check_velocities(const Scene& scene, double sound_speed);
+template <int D>
+void check_velocities(const Scene& scene, const Model<D>& model);
+
+/// Solids must not meet two periodic images of one another, and the box must hold the margin of their copies.
+template <int D>
+void check_margin(const Scene& scene, const Model<D>& model);
 
 /// The step (s) against its limits (s): refused beyond `refused_step` times the smallest.
 void check_step(const Scene& scene, double step, const StepLimits& limits);

@@ -150,6 +150,8 @@ Scene read_tree(const toml::table& tree, const std::string& file) {
   Source source{file, Units::dimensionless, 2};
   const Fields root(source, "", tree);
   scene.name = root.word("name");
+  if (scene.name.empty() || scene.name.find('/') != std::string::npos || scene.name.starts_with('.'))
+    root.fail("name", "names the output folder; write a plain name without '/'");
   scene.units = root.choice<Units>("units", {{"SI", Units::si}, {"dimensionless", Units::dimensionless}});
   source.units = scene.units;
   read_box(root.required_table("box"), source, scene);

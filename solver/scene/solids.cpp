@@ -152,6 +152,7 @@ std::vector<WallFace<D>> wall_faces(const Scene& scene, const Model<D>& model) {
       face.id = first_face_id + faces.size();
       face.axis = wall.axis;
       face.sign = sign;
+      face.thickness = wall.thickness / scene.fluid.cutoff;
       face.x = to_quanta(sign < 0.0 ? wall.position : wall.position + wall.thickness, side);
       for (int axis = 0; axis < D; ++axis)
         face.velocity[axis] = wall.velocities[0][static_cast<std::size_t>(axis)] / model.units.velocity;

@@ -197,8 +197,11 @@ void SerialEngine<D>::move_solids() {
         if (a != b) add_contacts(model_, bodies_[a], bodies_[b], loads[a]);
       add_face_contacts(model_, bodies_[a], loads[a]);
     }
-  for (std::size_t a = 0; a < state_.solids.size(); ++a)
-    finish_step(model_, state_.step, state_.solids[a], std::move(loads[a]), state_.outside_impulse);
+  for (std::size_t a = 0; a < state_.solids.size(); ++a) {
+    const std::string fault =
+        finish_step(model_, state_.step, state_.solids[a], std::move(loads[a]), state_.outside_impulse);
+    if (range_error_.empty()) range_error_ = fault;
+  }
 }
 
 template class SerialEngine<2>;

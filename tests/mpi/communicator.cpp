@@ -16,8 +16,14 @@ using testing::world;
 TEST(CommunicatorSums, of_wide_integers_are_exact) {
   const Int128 rank = world().rank(), size = world().size();
   const Int128 two_64 = Int128{1} << 64, two_100 = Int128{1} << 100;
-  std::vector<Int128> values{rank, -rank - 1, two_64 * (rank + 1), -two_100 + rank, rank % 2 == 0 ? two_100 : -two_100,
-                             (Int128{1} << 43) - 1, -(Int128{1} << 86), (Int128{1} << 120) / size};
+  std::vector<Int128> values{rank,
+                             -rank - 1,
+                             two_64 * (rank + 1),
+                             -two_100 + rank,
+                             rank % 2 == 0 ? two_100 : -two_100,
+                             (Int128{1} << 43) - 1,
+                             -(Int128{1} << 86),
+                             (Int128{1} << 120) / size};
   world().sum(values);
   const Int128 sum_of_ranks = size * (size - 1) / 2;
   EXPECT_TRUE(values[0] == sum_of_ranks);
@@ -72,7 +78,8 @@ TEST(CommunicatorGather, is_in_the_order_of_ranks_on_the_first) {
 /// A message whose length and content tell sender, receiver and turn.
 Buffer message(int from, int to, int turn) {
   Buffer buffer;
-  put(buffer, std::vector<int>(static_cast<std::size_t>((7 * from + 3 * to + turn) % 5 * 1000), 100 * from + 10 * to + turn));
+  put(buffer,
+      std::vector<int>(static_cast<std::size_t>((7 * from + 3 * to + turn) % 5 * 1000), 100 * from + 10 * to + turn));
   return buffer;
 }
 

@@ -23,7 +23,8 @@ using testing::world;
 template <int D>
 void stir(const Model<D>& model, State<D>& state) {
   const auto share = [](std::uint64_t id, int axis) {  // in (-1, 1)
-    return static_cast<double>(ParticleHash(id).add(static_cast<std::uint64_t>(axis)).value() >> 12) / (0.5 * box_quanta) -
+    return static_cast<double>(ParticleHash(id).add(static_cast<std::uint64_t>(axis)).value() >> 12) /
+               (0.5 * box_quanta) -
            1.0;
   };
   for (std::size_t i = 0; i < state.fluid.size(); ++i) {
@@ -39,7 +40,8 @@ void stir(const Model<D>& model, State<D>& state) {
       const double moved = std::nearbyint(0.25 * share(~solid.id, axis) / model.pair.length[axis]);
       solid.x[axis] = wrap_position(solid.x[axis] + moved);
     }
-    for (std::size_t k = 0; k < solid.density.size(); ++k) solid.density[k] = share(~solid.id, 100 + static_cast<int>(k));
+    for (std::size_t k = 0; k < solid.density.size(); ++k)
+      solid.density[k] = share(~solid.id, 100 + static_cast<int>(k));
     solid.contacts = {{solid.id + 1, 2, 3, {{0.25}}}};
     solid.fluid_impulse[0] = static_cast<Int128>(solid.id) << 70;
     solid.sampled_impulse[1] = -5;
@@ -55,7 +57,8 @@ State<D> share_of(const State<D>& global, const State<D>& places, const Region<D
     for (int axis = 0; axis < D; ++axis) x[axis] = places.fluid.x(axis)[i];
     if (!region.contains(x)) continue;
     share.fluid.id.push_back(global.fluid.id[i]);
-    for (std::size_t f = 0; f < global.fluid.field.size(); ++f) share.fluid.field[f].push_back(global.fluid.field[f][i]);
+    for (std::size_t f = 0; f < global.fluid.field.size(); ++f)
+      share.fluid.field[f].push_back(global.fluid.field[f][i]);
   }
   for (std::size_t i = 0; i < global.solids.size(); ++i)
     if (region.contains(places.solids[i].x)) share.solids.push_back(global.solids[i]);
@@ -193,7 +196,8 @@ void expect_reports_to_come_home(const Model<D>& model, Halo<D>& halo, const Sta
     }
   }
   for (const auto& [id, counts] : reported)
-    EXPECT_EQ(std::count(counts.begin(), counts.end(), 1), static_cast<std::ptrdiff_t>(counts.size())) << "solid " << id;
+    EXPECT_EQ(std::count(counts.begin(), counts.end(), 1), static_cast<std::ptrdiff_t>(counts.size()))
+        << "solid " << id;
 }
 
 template <int D>
@@ -211,7 +215,14 @@ void expect_brute_force_halo(const Built<D>& built, const Domains<D>& domains) {
   const Region<D> reach = widened(model, region, 1.0);
   EXPECT_EQ(rows(state.fluid), expected_rows(global, reach));
   EXPECT_EQ(solid_rows(state.solids), expected_solid_rows(global, region, nowhere<D>()));
-  EXPECT_EQ(solid_rows(copies), expected_solid_rows(global, widened(model, region, solid_margin(model)), region));
+  // The margin of the copies has a quarter of rcut to spare, for a solid that has just changed its owner: its former
+  // owner does not send it on to where it is not needed.
+  const auto copied = solid_rows(copies);
+  const double margin = solid_margin(model);
+  const auto needed = expected_solid_rows(global, widened(model, region, margin - 0.25), region);
+  const auto allowed = expected_solid_rows(global, widened(model, region, margin), region);
+  EXPECT_TRUE(std::includes(copied.begin(), copied.end(), needed.begin(), needed.end()));
+  EXPECT_TRUE(std::includes(allowed.begin(), allowed.end(), copied.begin(), copied.end()));
   EXPECT_TRUE(std::is_sorted(state.solids.begin(), state.solids.end(),
                              [](const Solid<D>& a, const Solid<D>& b) { return a.id < b.id; }));
   std::map<std::uint64_t, const Solid<D>*> original;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <iostream>
+#include <string>
 
 #include "mpi/world.hpp"
 
@@ -15,13 +16,18 @@ const Communicator* communicator = nullptr;
 /// The voice of the other processes: failures only.
 class FailurePrinter : public ::testing::EmptyTestEventListener {
  public:
+  void OnTestStart(const ::testing::TestInfo& info) override {
+    test_ = std::string(info.test_suite_name()) + "." + info.name();
+  }
   void OnTestPartResult(const ::testing::TestPartResult& result) override {
     if (!result.failed()) return;
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    std::cerr << "rank " << world().rank() << ": " << (test != nullptr ? test->test_suite_name() : "") << '.'
-              << (test != nullptr ? test->name() : "") << ": " << result.file_name() << ':' << result.line_number() << ": "
+    const char* file = result.file_name() != nullptr ? result.file_name() : "";
+    std::cerr << "rank " << world().rank() << ": " << test_ << ": " << file << ':' << result.line_number() << ": "
               << result.message() << std::endl;
   }
+
+ private:
+  std::string test_;
 };
 
 /// The first process reports failures of the others as its own, so that its list of failed tests is complete.

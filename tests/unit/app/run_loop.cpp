@@ -86,8 +86,9 @@ class ToyRun : public testing::Test {
 TEST_F(ToyRun, samples_and_ends_with_the_line_that_scripts_read) {
   const std::string printed = run();
   EXPECT_TRUE(contains(series(), "\n0,0,0,0,0,0,0,1,1,0,0,"));
-  // step 4, time 4 x 0.5 x 0.125; v = 4/8 x 4; superficial x 2 PPs / 64; energy 2 x (1/2)(1/4) x 128
-  EXPECT_TRUE(contains(series(), "\n4,0.25,2,0,0.0625,0,32,1,1,0,0,")) << series();
+  // step 4, time 4 x 0.5 x 0.125; v = 4/8 x 4; superficial x 2 PPs / 64; energy 2 x (1/2)(1/4) x 128;
+  // momentum 2 x 1/2 = 2^48 iota, all of it from outside
+  EXPECT_TRUE(contains(series(), "\n4,0.25,2,0,0.0625,0,32,1,1,281474976710656,0,281474976710656,0,0,0,")) << series();
   EXPECT_TRUE(contains(series(), "\n12,0.75,6,0,"));
   const std::string digest = record()["digest"];
   EXPECT_EQ(printed.rfind("digest " + digest + " step 12 particles 2 ranks 1 particle-steps/s ", 0), 0u) << printed;
@@ -148,7 +149,7 @@ TEST_F(ToyRun, stops_at_a_signal_with_a_checkpoint_and_says_how_to_go_on) {
   const std::string path = (folder_ / fmt::format("checkpoints/checkpoint_{:09}.h5", stopped)).string();
   EXPECT_TRUE(fs::exists(path));
   EXPECT_TRUE(
-      contains(printed, "resume with: toy run toy.toml --set a.b=1 --out " + options_.out + " --resume " + path))
+      contains(printed, "resume with: toy run toy.toml --set 'a.b=1' --out " + options_.out + " --resume " + path))
       << printed;
   EXPECT_TRUE(contains(printed.substr(printed.rfind('\n', printed.size() - 2)), "\ndigest ")) << "the last line";
 }

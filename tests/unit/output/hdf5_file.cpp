@@ -17,7 +17,7 @@ using testing_tools::ScratchFolder;
 class Hdf5File : public testing::Test {
  protected:
   Hdf5File() : path_((folder_ / "a.h5").string()) {
-    Hdf5Writer file(path_, SingleGroup());
+    Hdf5Writer file(path_, group_);
     file.make_group("g");
     file.text_attribute("g", "kind", "vertex");
     file.attribute("g", "numbers", std::vector<std::uint64_t>{7, 8});
@@ -28,6 +28,7 @@ class Hdf5File : public testing::Test {
     file.close();
   }
   ScratchFolder folder_;
+  SingleGroup group_;
   std::string path_;
 };
 

@@ -17,7 +17,8 @@ constexpr const char* si_header =
     "step,time [s],fluid_velocity_x [m/s],fluid_velocity_y [m/s],superficial_velocity_x [m/s],"
     "superficial_velocity_y [m/s],solid_velocity_x [m/s],solid_velocity_y [m/s],slip_x [m/s],slip_y [m/s],"
     "drag_x [N/m],drag_y [N/m],wall_force_x [N/m],wall_force_y [N/m],fluid_energy [J/m],solid_energy [J/m],"
-    "spin_energy [J/m],lowest_density_ratio,highest_density_ratio,momentum_defect_x,momentum_defect_y,digest";
+    "spin_energy [J/m],lowest_density_ratio,highest_density_ratio,"
+    "momentum_x,momentum_y,impulse_x,impulse_y,momentum_defect_x,momentum_defect_y,digest";
 
 Columns hand_columns(const UnitNames& units) {
   State<2> state = hand::state();
@@ -27,9 +28,11 @@ Columns hand_columns(const UnitNames& units) {
 
 TEST(Series, row_is_the_one_worked_by_hand) {
   // time 6 x 0.5 x 0.125; PPs (1/8, 1/8) x 4; superficial: x 4 PPs / (8 per area x area 8); SPs (3/8, -1/8) x 4;
-  // drag (6, -3) / 3 SPs / (2 steps of 0.5) x 256; energies x 128
+  // drag (6, -3) / 3 SPs / (2 steps of 0.5) x 256; energies x 128;
+  // momentum 4 PPs (1/8, 1/8) + 2 SPs of 16 (3/8, -1/8) = (12.5, -3.5), impulse (1/4, 1/2), in iota of 2^-48
   const std::string expected =
-      "6,0.375,0.5,0.5,0.03125,0.03125,1.5,-0.5,1,-1,512,-256,256,256,40,384,512,0.875,1.125,70368744177664,0,";
+      "6,0.375,0.5,0.5,0.03125,0.03125,1.5,-0.5,1,-1,512,-256,256,256,40,384,512,0.875,1.125,"
+      "3518437208883200,-985162418487296,70368744177664,140737488355328,70368744177664,0,";
   EXPECT_EQ(hand_columns({}).row(), expected + digest_text(digest_share(hand::state())));
 }
 
@@ -45,7 +48,8 @@ TEST(Series, of_a_scene_without_solids_has_no_column_of_theirs) {
   EXPECT_EQ(series_columns(model, si_unit_names(3), Totals<3>{}, {}, 0).header(),
             "step,time [s],fluid_velocity_x [m/s],fluid_velocity_y [m/s],fluid_velocity_z [m/s],"
             "superficial_velocity_x [m/s],superficial_velocity_y [m/s],superficial_velocity_z [m/s],fluid_energy [J],"
-            "lowest_density_ratio,highest_density_ratio,momentum_defect_x,momentum_defect_y,momentum_defect_z,digest");
+            "lowest_density_ratio,highest_density_ratio,momentum_x,momentum_y,momentum_z,impulse_x,impulse_y,impulse_z,"
+            "momentum_defect_x,momentum_defect_y,momentum_defect_z,digest");
 }
 
 TEST(Series, drag_is_the_mean_over_sps_fixed_or_not) {

@@ -162,7 +162,8 @@ TEST(DomainErrors, a_grid_that_does_not_match_the_processes) {
 }
 
 TEST(DomainErrors, bad_syntax) {
-  for (const std::string text : {"2", "2x", "x2", "2x2x1", "axb", "0x4", "-2x-2", "2 x2y", "2,2", "99999999999x1", "2000000x2000000"})
+  for (const std::string text :
+       {"2", "2x", "x2", "2x2x1", "axb", "0x4", "-2x-2", "2 x2y", "2,2", "99999999999x1", "2000000x2000000"})
     EXPECT_EQ(refusal(box_model<2>({{30.0, 30.0}}), 4, text),
               "command line: --domains = " + text + ": expected 2 positive numbers such as 2x4");
   EXPECT_EQ(refusal(box_model<3>({{30.0, 30.0, 30.0}}), 4, "2x2"),
@@ -171,17 +172,19 @@ TEST(DomainErrors, bad_syntax) {
 
 TEST(DomainErrors, more_processes_than_the_cutoff_allows) {
   // 10 rcut in 9 slabs of 1.11; PPs need 1.25, so 8 at most.
-  EXPECT_EQ(refusal(box_model<2>({{10.0, 4.0}}), 9, ""),
-            "command line: --domains = 9 along x: a domain would be 1.11 rcut wide, but the margin of the PPs needs 1.25; "
-            "use at most 8 domains along this axis");
+  EXPECT_EQ(
+      refusal(box_model<2>({{10.0, 4.0}}), 9, ""),
+      "command line: --domains = 9 along x: a domain would be 1.11 rcut wide, but the margin of the PPs needs 1.25; "
+      "use at most 8 domains along this axis");
   EXPECT_EQ(refusal(box_model<2>({{10.0, 4.0}}), 8, ""), "accepted");
 }
 
 TEST(DomainErrors, a_domain_that_the_solids_do_not_fit) {
   // Contacts of solids of radius 2 reach 4: with the quarter that they move, 4.25.
-  EXPECT_EQ(refusal(box_model<2>({{10.0, 12.0}}, 2.0, 2.0), 4, "1x4"),
-            "command line: --domains = 4 along y: a domain would be 3 rcut wide, but a solid (h > 2R) needs 4.25; use at "
-            "most 2 domains along this axis");
+  EXPECT_EQ(
+      refusal(box_model<2>({{10.0, 12.0}}, 2.0, 2.0), 4, "1x4"),
+      "command line: --domains = 4 along y: a domain would be 3 rcut wide, but a solid (h > 2R) needs 4.25; use at "
+      "most 2 domains along this axis");
   EXPECT_EQ(refusal(box_model<2>({{10.0, 12.0}}, 2.0, 2.0), 2, "1x2"), "accepted");
 }
 
@@ -224,7 +227,8 @@ TEST(Balanced, keeps_the_smallest_allowed_domain) {
   const double smallest = 1.25 / 8.0 * box_quanta;
   EXPECT_EQ((balanced<2>(model, even, {std::vector<std::uint64_t>{0, 0, 0, 0, 0, 0, 0, 9}, flat}).cuts()[0][1]),
             box_quanta - smallest);
-  EXPECT_EQ((balanced<2>(model, even, {std::vector<std::uint64_t>{9, 0, 0, 0, 0, 0, 0, 0}, flat}).cuts()[0][1]), smallest);
+  EXPECT_EQ((balanced<2>(model, even, {std::vector<std::uint64_t>{9, 0, 0, 0, 0, 0, 0, 0}, flat}).cuts()[0][1]),
+            smallest);
   // No particles at all: as small as allowed, and still a partition.
   expect_partition(balanced<2>(model, even, {std::vector<std::uint64_t>(8, 0), flat}));
 }

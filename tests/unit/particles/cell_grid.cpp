@@ -38,7 +38,8 @@ FluidParticles<D> scatter(const Place<D>& place, std::size_t count) {
     fluid.id[i] = 1000 + i;
     for (int axis = 0; axis < D; ++axis) {
       const double low = place.region.low[axis], high = place.region.high[axis], margin = place.margin(axis);
-      const double borders[] = {low - margin, low - 1.0, low, low + 1.0, high - 1.0, high, high + 1.0, high + margin - 1.0};
+      const double borders[] = {low - margin, low - 1.0, low,        low + 1.0,
+                                high - 1.0,   high,      high + 1.0, high + margin - 1.0};
       std::uniform_real_distribution<double> anywhere(low - margin, high + margin);
       fluid.x(axis)[i] = random() % 4 == 0 ? borders[random() % 8] : std::floor(anywhere(random));
       fluid.v(axis)[i] = static_cast<double>(i) + 0.25 * axis;
@@ -82,8 +83,7 @@ void expect_all_pairs_in_reach(double side, int per_cutoff) {
       if (square >= 1.0) continue;
       ++pairs;
       for (int axis = 0; axis < D; ++axis) {
-        const int apart =
-            std::abs(grid.coordinate(axis, fluid.x(axis)[i]) - grid.coordinate(axis, fluid.x(axis)[j]));
+        const int apart = std::abs(grid.coordinate(axis, fluid.x(axis)[i]) - grid.coordinate(axis, fluid.x(axis)[j]));
         ASSERT_LE(apart, grid.margin());
         // Cells that lie `apart` leave apart - 1 whole cells between; the rounding of a cell coordinate is 1e-15.
         ASSERT_LE((apart - 1) * grid.width(axis), distance[axis] + 1e-12);

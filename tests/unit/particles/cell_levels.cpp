@@ -23,8 +23,7 @@ std::vector<Body<D>> scatter(const Vec<D, double>& low, const Vec<D, double>& hi
   std::vector<Body<D>> bodies(static_cast<std::size_t>(count));
   for (Body<D>& body : bodies) {
     body.radius = std::max(0.1, std::pow(10.0, -unit(random)));
-    for (int axis = 0; axis < D; ++axis)
-      body.x[axis] = low[axis] - 0.5 + (high[axis] - low[axis] + 1.0) * unit(random);
+    for (int axis = 0; axis < D; ++axis) body.x[axis] = low[axis] - 0.5 + (high[axis] - low[axis] + 1.0) * unit(random);
   }
   bodies[0].radius = 1.0;
   bodies[1].radius = 0.1;
@@ -45,8 +44,8 @@ TEST(CellLevels, a_body_is_on_the_coarsest_mesh_not_larger_than_its_radius) {
   EXPECT_EQ(single.level_of(0.7), 0);
 }
 
-/// True neighbours are all found, once; a body on a mesh is visited only if its cell, which is not larger than its own
-/// radius, touches the reach.
+/// True neighbours are all found, once; a body on a mesh is visited only if its cell touches the reach. The mesh is not
+/// larger than its radius, and a whole number of cells in the region not twice as wide as the mesh.
 template <int D>
 void expect_neighbours(const Vec<D, double>& low, const Vec<D, double>& high, int count, double gap,
                        double largest_share) {
@@ -78,7 +77,7 @@ void expect_neighbours(const Vec<D, double>& low, const Vec<D, double>& high, in
         const bool outside = other.x[axis] < low[axis] || other.x[axis] > high[axis] || one.x[axis] < low[axis] ||
                              one.x[axis] > high[axis];
         if (outside) continue;
-        ASSERT_LE(std::fabs(r[axis]), reach + other.radius + 1e-12);
+        ASSERT_LE(std::fabs(r[axis]), reach + 2.0 * other.radius + 1e-12);
       }
     }
   }
@@ -93,14 +92,15 @@ TEST(CellLevels, bodies_of_1_to_10_in_size_find_all_their_neighbours_and_few_oth
   expect_neighbours<3>({{-3.0, 4.0, 0.0}}, {{9.0, 17.5, 11.3}}, 800, 0.1, 0.04);
 }
 
-TEST(CellLevels, the_cells_of_a_mesh_are_not_larger_than_the_mesh) {
-  // Region of 1.9 and a mesh of 1: two cells of 0.95. A point of no size at 0.1 with a reach of 0.2 sees the lower one.
-  CellLevels<2> levels({{0.0, 0.0}}, {{1.9, 1.9}}, 1.0, 1.0);
-  levels.add(0, {{0.5, 0.5}}, 1.0);
-  levels.add(1, {{1.85, 0.5}}, 1.0);
+TEST(CellLevels, a_mesh_that_is_fine_for_its_region_finds_the_same_with_wider_cells) {
+  // A region of 10^5 and a mesh of 1/4 would have 10^11 cells.
+  CellLevels<2> levels({{0.0, 0.0}}, {{1e5, 1e5}}, 0.25, 0.25);
+  levels.add(0, {{5e4, 5e4}}, 0.25);
+  levels.add(1, {{5e4 + 0.4, 5e4}}, 0.25);
+  levels.add(2, {{9e4, 9e4}}, 0.25);
   std::vector<std::uint32_t> visited;
-  levels.for_each_near({{0.1, 0.1}}, 0.0, -0.8, [&](std::uint32_t i) { visited.push_back(i); });
-  EXPECT_EQ(visited, std::vector<std::uint32_t>{0});
+  levels.for_each_near({{5e4, 5e4}}, 0.25, 0.0, [&](std::uint32_t i) { visited.push_back(i); });
+  EXPECT_EQ(visited, (std::vector<std::uint32_t>{0, 1}));
 }
 
 TEST(CellLevels, a_small_region_still_works_and_clear_forgets) {

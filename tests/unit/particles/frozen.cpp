@@ -44,7 +44,7 @@ TEST(Frozen, only_those_in_the_region_are_placed_with_the_velocity_of_the_body) 
   EXPECT_EQ(frozen[0].place.v, (Vec<2, double>{{0.25, 0.125}}));  // v + omega x (1/2, 0)
   EXPECT_EQ(frozen[0].depth, 0.5);
   EXPECT_EQ(frozen[0].own_density, 4.0);
-  EXPECT_EQ(frozen[0].volume.v2, 1.0 / 64.0);           // density 8
+  EXPECT_EQ(frozen[0].volume.v2, 1.0 / 64.0);            // density 8
   EXPECT_EQ(frozen[0].volume.pv2, (8.0 - 10.0) / 64.0);  // p = c^2 (rho - rho0)
   place_frozen(model, body, 7, Region<2>::whole_box(), frozen);
   EXPECT_EQ(frozen.size(), 3u);

@@ -32,7 +32,8 @@ Both<D> touch(const Model<D>& model, const Solid<D>& first, const Solid<D>& seco
 TEST(SolidContact, head_on_by_hand) {
   // Centres 1.875 apart: overlap 1/8, force 12.5 along x, no torque.
   const Model<2> model = hand_model<2>();
-  const Both<2> loads = touch(model, hand_solid(model, 3, 0, {{2.0, 4.0}}, {}), hand_solid(model, 5, 0, {{3.875, 4.0}}, {}));
+  const Both<2> loads =
+      touch(model, hand_solid(model, 3, 0, {{2.0, 4.0}}, {}), hand_solid(model, 5, 0, {{3.875, 4.0}}, {}));
   EXPECT_TRUE(loads.on_first.contact.linear[0] == -quanta(12.5));
   EXPECT_TRUE(loads.on_second.contact.linear[0] == quanta(12.5));
   EXPECT_TRUE(loads.on_first.contact.linear[1] == 0);
@@ -76,13 +77,15 @@ TEST(SolidContact, reaches_through_the_periodic_border) {
 
 TEST(SolidContact, none_beyond_touch) {
   const Model<2> model = hand_model<2>();
-  const Both<2> loads = touch(model, hand_solid(model, 0, 0, {{2.0, 4.0}}, {}), hand_solid(model, 1, 0, {{4.0, 4.0}}, {}));
+  const Both<2> loads =
+      touch(model, hand_solid(model, 0, 0, {{2.0, 4.0}}, {}), hand_solid(model, 1, 0, {{4.0, 4.0}}, {}));
   EXPECT_TRUE(loads.on_first.contact.linear == (Vec<2, Int128>{}));
   EXPECT_TRUE(loads.on_first.kept.empty());
 }
 
 TEST(SolidContact, names_the_balls_that_touch) {
-  // A dumb-bell at 2, its front ball at 2.75; the other turned by half a turn, so that its ball 0 points back, to 3.625.
+  // A dumb-bell at 2, its front ball at 2.75; the other turned by half a turn, so that its ball 0 points back,
+  // to 3.625.
   const Model<2> model = hand_model<2>();
   const Solid<2> first = hand_solid(model, 0, 1, {{2.0, 4.0}}, {});
   Solid<2> second = hand_solid(model, 1, 1, {{4.375, 4.0}}, {});
@@ -149,7 +152,7 @@ TEST(FaceContact, by_hand) {
   // Centre 7/8 above an upward face at y = 1: force 12.5 up. Sliding along x with 1/4: friction 25/32 against it, whose
   // torque about the centre with the lever (0, -15/16) is -(15/16) (25/32).
   Model<2> model = hand_model<2>();
-  model.faces = {{77, 1, 1.0, 1.0 / model.pair.length[1], {}}};
+  model.faces = {{77, 1, 1.0, 1.0 / model.pair.length[1], 1.0, {}}};
   const Solid<2> solid = hand_solid(model, 0, 0, {{2.0, 1.875}}, {{0.25, 0.0}});
   SolidLoad<2> load;
   add_face_contacts(model, solid_in_step(model, solid), load);
@@ -164,7 +167,7 @@ TEST(FaceContact, by_hand) {
 
 TEST(FaceContact, a_face_that_moves_along_does_not_rub_and_the_other_side_pushes_down) {
   Model<2> model = hand_model<2>();
-  model.faces = {{77, 1, -1.0, 6.0 / model.pair.length[1], {{0.25, 0.0}}}};
+  model.faces = {{77, 1, -1.0, 6.0 / model.pair.length[1], 1.0, {{0.25, 0.0}}}};
   const Solid<2> solid = hand_solid(model, 0, 0, {{2.0, 5.125}}, {{0.25, 0.0}});
   SolidLoad<2> load;
   add_face_contacts(model, solid_in_step(model, solid), load);
@@ -174,6 +177,32 @@ TEST(FaceContact, a_face_that_moves_along_does_not_rub_and_the_other_side_pushes
   SolidLoad<2> none;
   add_face_contacts(model, solid_in_step(model, above), none);
   EXPECT_TRUE(none.kept.empty());
+}
+
+TEST(FaceContact, a_ball_beyond_the_middle_of_the_wall_is_left_to_the_other_face) {
+  // A wall of thickness 1 below y = 1. The ball's centre is 3/8 below the face, then 5/8.
+  Model<2> model = hand_model<2>();
+  model.faces = {{77, 1, 1.0, 1.0 / model.pair.length[1], 1.0, {}}};
+  const Solid<2> shallow = hand_solid(model, 0, 0, {{2.0, 0.625}}, {}), deep = hand_solid(model, 0, 0, {{2.0, 0.375}}, {});
+  SolidLoad<2> pushed, left;
+  add_face_contacts(model, solid_in_step(model, shallow), pushed);
+  EXPECT_TRUE(pushed.wall.linear[1] == quanta(137.5));  // overlap 1 3/8
+  add_face_contacts(model, solid_in_step(model, deep), left);
+  EXPECT_TRUE(left.kept.empty());
+}
+
+TEST(SolidContact, two_that_cannot_move_do_not_touch) {
+  Model<2> model = hand_model<2>();
+  model.faces = {{77, 1, 1.0, 3.5 / model.pair.length[1], 1.0, {}}};
+  Solid<2> first = hand_solid(model, 0, 0, {{2.0, 4.0}}, {}), second = hand_solid(model, 1, 0, {{3.875, 4.0}}, {});
+  first.motion = SolidMotion::fixed;
+  second.motion = SolidMotion::moving;
+  const Both<2> loads = touch(model, first, second);
+  EXPECT_TRUE(loads.on_first.kept.empty());
+  EXPECT_TRUE(loads.on_second.contact.linear == (Vec<2, Int128>{}));
+  SolidLoad<2> load;
+  add_face_contacts(model, solid_in_step(model, first), load);
+  EXPECT_TRUE(load.kept.empty());
 }
 
 TEST(FinishStep, body_force_kicks_a_free_solid_after_the_relaxation) {
@@ -236,6 +265,34 @@ TEST(FinishStep, what_a_fixed_or_moving_solid_receives_goes_outside) {
   }
 }
 
+TEST(FinishStep, a_solid_that_moves_too_far_stays_and_is_reported) {
+  // A step of 1/32: a quarter of rcut is 8 c.
+  const Model<2> model = hand_model<2>();
+  Vec<2, Int128> outside{};
+  Solid<2> allowed = hand_solid(model, 4, 0, {{2.0, 4.0}}, {{0.0, 8.0}});
+  EXPECT_EQ(finish_step(model, 3, allowed, {}, outside), "");
+  EXPECT_EQ(allowed.x[1], 4.25 / model.pair.length[1]);
+  Solid<2> fast = hand_solid(model, 4, 0, {{2.0, 4.0}}, {{6.0, -8.0}});
+  const Solid<2> before = fast;
+  EXPECT_EQ(finish_step(model, 3, fast, {}, outside),
+            "step 3: solid 4: a point of it moves more than rcut/4 in one step (velocity 10 c, rim 0 c before it); the "
+            "step is too long or the contact too stiff");
+  EXPECT_EQ(fast.x, before.x);
+  EXPECT_TRUE(fast.momentum == before.momentum);
+}
+
+TEST(FinishStep, a_density_out_of_range_is_reported) {
+  Model<2> model = hand_model<2>();  // rest density 10
+  Vec<2, Int128> outside{};
+  Solid<2> solid = hand_solid(model, 4, 0, {{2.0, 4.0}}, {});
+  solid.density = {100.0, 1.0};
+  EXPECT_EQ(finish_step(model, 3, solid, {}, outside), "");
+  solid.density = {100.0, 0.5};
+  EXPECT_EQ(finish_step(model, 3, solid, {}, outside),
+            "step 3: solid 4: density at its frozen particle 1 is 0.05 times rest, outside 0.1 to 10; the fluid tears or "
+            "collapses there: raise the sound speed or resolve the gap");
+}
+
 TEST(ParticleStepConstants, by_hand) {
   Model<3> model = hand_model<3>();
   model.terms.body_force = true;
@@ -256,12 +313,14 @@ TEST(RangeMessage, names_step_particle_value_and_cause) {
   NeighbourSums<2> sums{};
   sums.impulse = {{5, -(std::int64_t{1} << 51)}};  // the larger of the two is named
   sums.density = std::int64_t{3} << 43;
-  EXPECT_EQ(range_message<2>(RangeFault::impulse, 12, 345, {}, sums),
-            "step 12: particle 345: impulse -8 m c is too large for its fixed-point range; particles overlap or the step "
-            "is too long");
-  EXPECT_EQ(range_message<2>(RangeFault::displacement, 12, 345, {{3.0, 4.0}}, sums),
-            "step 12: particle 345: moves more than rcut/4 in one step (velocity 5 c before it); the step is too long or "
-            "the sound speed too low");
+  EXPECT_EQ(
+      range_message<2>(RangeFault::impulse, 12, 345, {}, sums),
+      "step 12: particle 345: impulse -8 m c is too large for its fixed-point range; particles overlap or the step "
+      "is too long");
+  EXPECT_EQ(
+      range_message<2>(RangeFault::displacement, 12, 345, {{3.0, 4.0}}, sums),
+      "step 12: particle 345: moves more than rcut/4 in one step (velocity 5 c before it); the step is too long or "
+      "the sound speed too low");
   EXPECT_EQ(range_message<2>(RangeFault::density, 12, 345, {}, sums),
             "step 12: particle 345: density 1.5 PPs per rcut^2 is outside 0.1 to 10 times rest; the fluid tears or "
             "collapses: raise the sound speed or resolve the gap");

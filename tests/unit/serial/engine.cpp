@@ -110,7 +110,8 @@ TEST(SerialEngine, a_turning_disc_drags_the_fluid_along_and_is_slowed) {
   double fluid_spin = 0.0;
   const FluidParticles<2>& fluid = engine.state().fluid;
   for (std::size_t i = 0; i < fluid.size(); ++i)
-    fluid_spin += (fluid.x(0)[i] - 0.5 * box_quanta) * fluid.v(1)[i] - (fluid.x(1)[i] - 0.5 * box_quanta) * fluid.v(0)[i];
+    fluid_spin +=
+        (fluid.x(0)[i] - 0.5 * box_quanta) * fluid.v(1)[i] - (fluid.x(1)[i] - 0.5 * box_quanta) * fluid.v(0)[i];
   EXPECT_GT(fluid_spin, 0.0);
 }
 
@@ -187,7 +188,8 @@ TEST(SerialEngine, a_galilean_boost_changes_relative_motion_by_rounding_only) {
     const auto &xa = a.state().fluid.x(axis), &xb = b.state().fluid.x(axis);
     for (std::size_t i = 0; i < xa.size(); ++i) {
       const double relative_a = nearest_difference(xa[i], xa[0]), relative_b = nearest_difference(xb[i], xb[0]);
-      largest_x = std::max(largest_x, std::fabs(nearest_difference(relative_a, relative_b)) * still.model.pair.length[axis]);
+      largest_x =
+          std::max(largest_x, std::fabs(nearest_difference(relative_a, relative_b)) * still.model.pair.length[axis]);
       largest_v = std::max(largest_v, std::fabs(b.state().fluid.v(axis)[i] - a.state().fluid.v(axis)[i] - boost[axis]));
     }
   }
@@ -208,6 +210,15 @@ TEST(SerialEngine, a_value_out_of_range_is_reported_and_not_thrown) {
   engine.step();
   EXPECT_NE(engine.range_error().find("step 0: particle 0: moves more than rcut/4"), std::string::npos)
       << engine.range_error();
+}
+
+TEST(SerialEngine, a_solid_out_of_range_is_reported_and_not_thrown) {
+  const Built<2> built(testing::discs_alone());
+  State<2> state = built.state();
+  state.solids[1].momentum[0] *= 1000;
+  SerialEngine<2> engine(built.model, std::move(state), Neighbours::cells);
+  engine.step();
+  EXPECT_EQ(engine.range_error().find("step 0: solid 1: a point of it moves more than rcut/4"), 0u) << engine.range_error();
 }
 
 }  // namespace

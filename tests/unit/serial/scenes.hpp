@@ -74,7 +74,15 @@ solid = "balance"
 )";
 }
 
-/// Two large discs among small ones of a tenth of their size, which have a single FP. Domains must be 4.25 wide.
+/// The discs of `dense_discs` without a fluid.
+inline std::string discs_alone() {
+  std::string text = replaced(dense_discs(), "viscosity = 0.5", "particles = false");
+  text = replaced(text, "velocity = [0.02, -0.01]", "");
+  text = replaced(text, "fluid = [0.0, 0.0005]\nsolid = \"balance\"", "");
+  return replaced(text, "steps = 100", "steps = 100\nstep = 0.125");
+}
+
+/// Three large discs among small ones of a tenth of their size, which have a single FP. Domains must be 4.25 wide.
 inline std::string one_to_ten() {
   return head("[18.0, 17.4]", "0.3", "11.1111111111") + R"(
 [[body]]
@@ -143,24 +151,24 @@ solid = [0.0, -0.001]
 
 /// Free turning spheres with Hertz contacts. Domains must be 1.85 wide.
 inline std::string spheres() {
-  return head("[7.6, 7.6, 7.6]", "0.4", "15.625") + R"(
+  return head("[7.6, 7.6, 7.6]", "0.5", "8.0") + R"(
 [[body]]
 shape = "sphere"
 radius = 0.6
-density = 40.0
+density = 20.0
 velocity = [0.1, 0.06, -0.05]
 angular_velocity = [0.1, 0.2, -0.1]
 random = { count = 20, seed = 1, gap = 0.01 }
 [[body]]
 shape = "sphere"
 radius = 0.55
-density = 30.0
+density = 15.0
 velocity = [-0.1, 0.03, 0.08]
 angular_velocity = [-0.1, 0.1, 0.2]
 random = { count = 20, seed = 2, gap = 0.01 }
 [contact]
 model = "hertz"
-young = 100.0
+young = 50.0
 poisson = 0.25
 restitution = 0.8
 friction = 0.3
