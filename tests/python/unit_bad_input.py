@@ -48,6 +48,11 @@ def override(*settings: str) -> Options:
         (["fluid.sound_speed=0.01"], ["fluid.sound_speed", "0.01"]),
         (["units=SI", "fluid.density=5 um"], ["fluid.density", "5 um"]),
         (["body.0.shape=sphere"], ["body.0.shape", "disc"]),
+        ([" =3"], ["empty key"]),
+        (["name=../elsewhere"], ["name", "without '/'"]),
+        (["body.0.random.count=1000000000000000000"], ["body.0.random.count", "at most"]),
+        (["body.0.angular_velocity=20.0"], ["fluid.sound_speed", "largest declared speed"]),  # of the rim
+        (["body.0.radius=0.26", "body.0.random.count=2"], ["box.size", "two periodic images"]),
     ],
 )
 @pytest.mark.parametrize("ranks", [0, 1])
@@ -104,7 +109,8 @@ def test_paths_that_cannot_be_used(tmp_path: Path) -> None:
 
 
 def test_the_command_line_is_checked_too(tmp_path: Path) -> None:
-    for words in ([], ["walk"], ["run"], ["run", str(SCENE), "--speed", "3"], ["run", str(SCENE), "--threads", "0"]):
+    for words in ([], ["walk"], ["run"], ["run", str(SCENE), "--speed", "3"], ["run", str(SCENE), "--threads", "0"],
+                  ["run", str(SCENE), "--steps", "-5"], ["run", str(SCENE), "--rebalance", "-1"]):
         finished = subprocess.run([program("mappm"), *words], cwd=tmp_path, capture_output=True, text=True)
         assert finished.returncode == INPUT
         assert finished.stderr.strip()

@@ -56,7 +56,7 @@ def test_the_last_line_and_the_record(tmp_path: Path, ranks: int) -> None:
     series = finished.series
     assert list(series["step"]) == [0, 10, 20]
     for name in ("time", "fluid_velocity_x", "solid_velocity_y", "slip_y", "drag_y", "fluid_energy",
-                 "lowest_density_ratio", "momentum_defect_x", "digest"):
+                 "lowest_density_ratio", "momentum_x", "impulse_x", "digest"):
         assert name in series
     assert series["digest"][-1] == record["digest"]
 
