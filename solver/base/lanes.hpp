@@ -40,7 +40,9 @@ MAPPM_INLINE double smaller(double a, double b) { return b < a ? b : a; }
 MAPPM_INLINE Lanes smaller(const Lanes& a, const Lanes& b) { return std::experimental::min(a, b); }
 
 MAPPM_INLINE Lanes load_lanes(const double* from) { return Lanes(from, std::experimental::element_aligned); }
-MAPPM_INLINE IntLanes load_lanes(const std::int64_t* from) { return IntLanes(from, std::experimental::element_aligned); }
+MAPPM_INLINE IntLanes load_lanes(const std::int64_t* from) {
+  return IntLanes(from, std::experimental::element_aligned);
+}
 MAPPM_INLINE void store_lanes(const IntLanes& lanes, std::int64_t* to) {
   lanes.copy_to(to, std::experimental::element_aligned);
 }

@@ -53,9 +53,9 @@ Vec<D, int> parse_grid(const std::string& text, int processes) {
     product *= grid[axis];
   }
   if (product != processes)
-    throw InputError("command line", "--domains", text,
-                     fmt::format("{} domains do not match {} processes; start mpirun with -np {}", product, processes,
-                                 product));
+    throw InputError(
+        "command line", "--domains", text,
+        fmt::format("{} domains do not match {} processes; start mpirun with -np {}", product, processes, product));
   return grid;
 }
 
@@ -73,11 +73,12 @@ void check_sides(const Model<D>& model, const Domains<D>& domains) {
       const double side = (cuts[n] - cuts[n - 1]) * model.pair.length[axis];
       if (side >= smallest_side(model)) continue;
       const int most = std::max(1, static_cast<int>(model.box[axis] / smallest_side(model)));
-      throw InputError("command line", "--domains", fmt::format("{} along {}", cuts.size() - 1, "xyz"[axis]),
-                       fmt::format("a domain would be {:.3g} rcut wide, but {} needs {:.3g}; use at most {} domains along "
-                                   "this axis",
-                                   side, model.terms.solids ? "a solid (h > 2R)" : "the margin of the PPs",
-                                   smallest_side(model), most));
+      throw InputError(
+          "command line", "--domains", fmt::format("{} along {}", cuts.size() - 1, "xyz"[axis]),
+          fmt::format("a domain would be {:.3g} rcut wide, but {} needs {:.3g}; use at most {} domains along "
+                      "this axis",
+                      side, model.terms.solids ? "a solid (h > 2R)" : "the margin of the PPs", smallest_side(model),
+                      most));
     }
   }
 }
@@ -215,7 +216,8 @@ Domains<D> balanced(const Model<D>& model, const Domains<D>& domains,
       const double inside = bin < bins.size() && bins[bin] > 0
                                 ? (wanted - static_cast<double>(below)) / static_cast<double>(bins[bin])
                                 : 0.0;
-      const double cut = std::floor((static_cast<double>(bin) + inside) / static_cast<double>(bins.size()) * box_quanta);
+      const double cut =
+          std::floor((static_cast<double>(bin) + inside) / static_cast<double>(bins.size()) * box_quanta);
       const auto place = static_cast<std::size_t>(n);
       borders[place] = std::clamp(cut, borders[place - 1] + smallest, box_quanta - (count - n) * smallest);
     }
@@ -223,11 +225,10 @@ Domains<D> balanced(const Model<D>& model, const Domains<D>& domains,
   return Domains<D>(std::move(cuts));
 }
 
-#define MAPPM_INSTANTIATE(D)                                                          \
-  template class Domains<D>;                                                          \
-  template Domains<D> make_domains<D>(const Model<D>&, int, const std::string&);      \
-  template Domains<D> balanced<D>(const Model<D>&, const Domains<D>&,                 \
-                                  const std::array<std::vector<std::uint64_t>, D>&);
+#define MAPPM_INSTANTIATE(D)                                                     \
+  template class Domains<D>;                                                     \
+  template Domains<D> make_domains<D>(const Model<D>&, int, const std::string&); \
+  template Domains<D> balanced<D>(const Model<D>&, const Domains<D>&, const std::array<std::vector<std::uint64_t>, D>&);
 MAPPM_INSTANTIATE(2)
 MAPPM_INSTANTIATE(3)
 #undef MAPPM_INSTANTIATE

@@ -55,10 +55,10 @@ class ParallelEngine {
 
   // Of the present step:
   std::vector<Solid<D>> copies_;
-  std::vector<SolidInStep<D>> bodies_;          // owned solids, then copies
+  std::vector<SolidInStep<D>> bodies_;  // owned solids, then copies
   std::vector<FrozenInStep<D>> frozen_;
   std::vector<NeighbourSums<D>> frozen_sums_;
-  std::vector<SolidLoad<D>> loads_;             // of owned solids
+  std::vector<SolidLoad<D>> loads_;  // of owned solids
 
   std::string range_error_;
   double seconds_[5] = {};

@@ -19,10 +19,10 @@ namespace mappm {
 /// What one process found out about a copy of a solid: the load of the FPs in its region, and their new densities.
 template <int D>
 struct HomeReport {
-  std::uint64_t solid = 0;                // id
+  std::uint64_t solid = 0;  // id
   SolidImpulse<D> fluid;
-  std::vector<std::uint32_t> index;       // of FPs in the shape
-  std::vector<double> density;            // theirs
+  std::vector<std::uint32_t> index;  // of FPs in the shape
+  std::vector<double> density;       // theirs
 };
 
 template <int D>
@@ -55,9 +55,9 @@ class Halo {
   const Domains<D>& domains_;
   const Communicator& communicator_;
   Region<D> region_, reach_, solid_reach_;
-  Region<D> interior_;                      // particles here are needed by nobody else
+  Region<D> interior_;  // particles here are needed by nobody else
   std::vector<Image<D>> images_;
-  std::vector<Region<D>> image_reach_;      // margin of rcut around each image
+  std::vector<Region<D>> image_reach_;  // margin of rcut around each image
   std::vector<Region<D>> image_solid_reach_;
   std::vector<int> partners_;
   std::vector<Buffer> out_, in_;

@@ -45,8 +45,8 @@ struct LaneSums {
 
 /// One chunk of lanes, particles j .. j + count - 1. With `lanes_first` the lanes are i of the law and the centre is j.
 template <class Kernel, bool transport, bool lanes_first, bool whole, int D, class Beta>
-MAPPM_INLINE void pair_chunk(const PairLaw<D>& law, const PairFields<D>& fields, const PairCentre<D>& centre, std::size_t j,
-                       int count, const Beta& beta, LaneSums<D>& sums) {
+MAPPM_INLINE void pair_chunk(const PairLaw<D>& law, const PairFields<D>& fields, const PairCentre<D>& centre,
+                             std::size_t j, int count, const Beta& beta, LaneSums<D>& sums) {
   FluidPair<D, Lanes> pair;
   for (int axis = 0; axis < D; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
@@ -80,7 +80,7 @@ MAPPM_INLINE void pair_chunk(const PairLaw<D>& law, const PairFields<D>& fields,
 /// Pairs of `centre` with particles [begin, end): adds to their sums, and the opposite to `sums` of the centre.
 template <class Kernel, bool transport, bool lanes_first, int D, class Beta>
 MAPPM_INLINE void pair_row(const PairLaw<D>& law, const PairFields<D>& fields, const PairCentre<D>& centre,
-                     std::size_t begin, std::size_t end, const Beta& beta, detail::LaneSums<D>& sums) {
+                           std::size_t begin, std::size_t end, const Beta& beta, detail::LaneSums<D>& sums) {
   std::size_t j = begin;
   for (; j + lane_count <= end; j += lane_count)
     detail::pair_chunk<Kernel, transport, lanes_first, true>(law, fields, centre, j, lane_count, beta, sums);

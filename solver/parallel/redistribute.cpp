@@ -72,11 +72,10 @@ void redistribute(const Model<D>& model, const Domains<D>& domains, const Commun
     }
     while (!reader.at_end()) state.solids.push_back(get_solid(reader, model));
   }
-  std::sort(state.solids.begin(), state.solids.end(),
-            [](const Solid<D>& a, const Solid<D>& b) { return a.id < b.id; });
+  std::sort(state.solids.begin(), state.solids.end(), [](const Solid<D>& a, const Solid<D>& b) { return a.id < b.id; });
 }
 
-#define MAPPM_INSTANTIATE(D)                                                                                       \
+#define MAPPM_INSTANTIATE(D)                                                                                        \
   template Domains<D> domains_by_load<D>(const Model<D>&, const Domains<D>&, const Communicator&, const State<D>&); \
   template void redistribute<D>(const Model<D>&, const Domains<D>&, const Communicator&, State<D>&);
 MAPPM_INSTANTIATE(2)

@@ -17,7 +17,7 @@ class CellLevels {
   /// A region [low, high] in any unit of length, and the largest radius that will be registered.
   CellLevels(const Vec<D, double>& low, const Vec<D, double>& high, double largest_radius, double smallest_radius)
       : low_(low), high_(high) {
-    for (double mesh = largest_radius; ; mesh *= 0.5) {
+    for (double mesh = largest_radius;; mesh *= 0.5) {
       levels_.push_back(make_level(mesh));
       if (mesh <= smallest_radius) break;
     }
@@ -82,8 +82,8 @@ class CellLevels {
     std::vector<std::size_t> used;  // cells that hold bodies now
   };
 
-  /// Cells as wide as the mesh, or wider where there would be more than `most_cells` of them: a body may be registered in
-  /// a cell of any width, only the visits grow.
+  /// Cells as wide as the mesh, or wider where there would be more than `most_cells` of them: a body may be registered
+  /// in a cell of any width, only the visits grow.
   Level make_level(double mesh) const {
     Level level;
     level.mesh = mesh;

@@ -27,8 +27,7 @@ void place_frozen(const Model<D>& model, const SolidInStep<D>& body, std::uint32
   for (std::uint32_t k = 0; k < frozen.size(); ++k) {
     const PlacedFrozen<D> placed = place(*body.solid, body.velocity, frozen[k], model.pair.length);
     if (!region.contains(placed.x)) continue;
-    const VolumeTerms<double> volume =
-        volume_terms(body.solid->density[k], model.rest_density, 1.0, model.background);
+    const VolumeTerms<double> volume = volume_terms(body.solid->density[k], model.rest_density, 1.0, model.background);
     to.push_back({placed, volume, frozen[k].depth, frozen[k].own_density, solid, k});
   }
 }

@@ -16,20 +16,20 @@ namespace mappm {
 
 /// What the scene declares, and therefore what is computed. Worked out once, printed at start, kept in run.json.
 struct Terms {
-  bool fluid = true;           // PPs exist
-  bool transport = false;      // transport velocity
-  bool extrapolated = false;   // no-slip by extrapolation; needs solids
+  bool fluid = true;          // PPs exist
+  bool transport = false;     // transport velocity
+  bool extrapolated = false;  // no-slip by extrapolation; needs solids
   bool body_force = false;
-  bool solids = false;         // FPs exist
-  bool motion = false;         // some solid is not fixed
-  bool rotation = false;       // some free solid rotates
-  bool contact = false;        // contact law given, and at least two solids, or one and a wall
+  bool solids = false;    // FPs exist
+  bool motion = false;    // some solid is not fixed
+  bool rotation = false;  // some free solid rotates
+  bool contact = false;   // contact law given, and at least two solids, or one and a wall
 };
 
 /// A face of a wall, for contact of solids with it. Its FPs are solids of their own.
 template <int D>
 struct WallFace {
-  std::uint64_t id = 0;     // its partner id in contacts
+  std::uint64_t id = 0;  // its partner id in contacts
   int axis = 0;
   double sign = 1.0;        // outward normal: +1 or -1 along the axis
   double x = 0.0;           // position quanta
@@ -46,29 +46,30 @@ struct UnitScale {
 
 template <int D>
 struct Model {
-  Vec<D, double> box;                 // sides, rcut
+  Vec<D, double> box;  // sides, rcut
   Terms terms;
   KernelKind kernel = KernelKind::wendland_c2;
   PairLaw<D> pair;
-  double rest_density = 0.0;          // rho0, PPs per rcut^D
-  double background = 0.0;            // p_b
-  double self_density = 0.0;          // W(0), an integer multiple of the density quantum
-  double no_slip_nearest = 0.0;       // dx / 4, rcut
-  double spacing = 0.0;               // dx, rcut
-  double dt = 0.0;                    // rcut / c
-  std::uint64_t relax = 0;            // body forces act from this step on
-  Vec<D, double> fluid_kick{};        // body-force impulse on one PP in a step: an integer multiple of iota
+  double rest_density = 0.0;            // rho0, PPs per rcut^D
+  double background = 0.0;              // p_b
+  double self_density = 0.0;            // W(0), an integer multiple of the density quantum
+  double no_slip_nearest = 0.0;         // dx / 4, rcut
+  double spacing = 0.0;                 // dx, rcut
+  double dt = 0.0;                      // rcut / c
+  std::uint64_t relax = 0;              // body forces act from this step on
+  Vec<D, double> fluid_kick{};          // body-force impulse on one PP in a step: an integer multiple of iota
   Vec<D, double> solid_acceleration{};  // of free SPs, c^2 / rcut
   ContactLaw contact;
   std::vector<Shape<D>> shapes;
   std::vector<WallFace<D>> faces;
-  double largest_reach = 0.0;         // over shapes, rcut
-  double largest_contact_reach = 0.0; // over shapes that take part in contact, rcut
+  double largest_reach = 0.0;          // over shapes, rcut
+  double largest_contact_reach = 0.0;  // over shapes that take part in contact, rcut
   UnitScale units;
 };
 
 /// Width of the margin of a domain in which solids are copied, rcut: a solid, and what it moves in a step, must be seen
-/// wherever one of its FPs is a neighbour (the paper's L), or another solid touches it (2R). No box side may be shorter.
+/// wherever one of its FPs is a neighbour (the paper's L), or another solid touches it (2R). No box side may be
+/// shorter.
 template <int D>
 double solid_margin(const Model<D>& model) {
   if (!model.terms.solids) return 0.0;
@@ -85,9 +86,12 @@ void with_pair_law(const Model<D>& model, F&& f) {
       f(kernel, std::false_type{});
   };
   switch (model.kernel) {
-    case KernelKind::wendland_c2: return with_kernel(WendlandC2{});
-    case KernelKind::lucy: return with_kernel(Lucy{});
-    case KernelKind::mps: return with_kernel(MpsWeight{});
+    case KernelKind::wendland_c2:
+      return with_kernel(WendlandC2{});
+    case KernelKind::lucy:
+      return with_kernel(Lucy{});
+    case KernelKind::mps:
+      return with_kernel(MpsWeight{});
   }
 }
 

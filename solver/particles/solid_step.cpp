@@ -124,7 +124,7 @@ void add_face_contacts(const Model<D>& model, const SolidInStep<D>& one, SolidLo
 
 template <int D>
 std::string finish_step(const Model<D>& model, std::uint64_t step, Solid<D>& solid, SolidLoad<D>&& load,
-                 Vec<D, Int128>& outside_impulse) {
+                        Vec<D, Int128>& outside_impulse) {
   const Shape<D>& shape = model.shapes[solid.shape];
   solid.fluid_impulse += load.fluid.linear;
   std::sort(load.kept.begin(), load.kept.end(), [](const Contact<D>& a, const Contact<D>& b) {
@@ -150,17 +150,19 @@ std::string finish_step(const Model<D>& model, std::uint64_t step, Solid<D>& sol
   }
   if (advance(solid, shape, total, model.dt, model.pair.length) != RangeFault::none) {
     const RigidVelocity<D> velocity = rigid_velocity(solid, shape);
-    return fmt::format("step {}: solid {}: a point of it moves more than rcut/4 in one step (velocity {:.3g} c, rim {:.3g} "
-                       "c before it); the step is too long or the contact too stiff",
-                       step, solid.id, square_root(dot(velocity.linear, velocity.linear)),
-                       square_root(dot(velocity.angular, velocity.angular)) * shape.reach);
+    return fmt::format(
+        "step {}: solid {}: a point of it moves more than rcut/4 in one step (velocity {:.3g} c, rim {:.3g} "
+        "c before it); the step is too long or the contact too stiff",
+        step, solid.id, square_root(dot(velocity.linear, velocity.linear)),
+        square_root(dot(velocity.angular, velocity.angular)) * shape.reach);
   }
   for (std::size_t k = 0; k < solid.density.size(); ++k) {
     const double ratio = solid.density[k] / model.rest_density;
     if (!(ratio >= lowest_density_ratio && ratio <= highest_density_ratio))
-      return fmt::format("step {}: solid {}: density at its frozen particle {} is {:.3g} times rest, outside {} to {}; the "
-                         "fluid tears or collapses there: raise the sound speed or resolve the gap",
-                         step, solid.id, k, ratio, lowest_density_ratio, highest_density_ratio);
+      return fmt::format(
+          "step {}: solid {}: density at its frozen particle {} is {:.3g} times rest, outside {} to {}; the "
+          "fluid tears or collapses there: raise the sound speed or resolve the gap",
+          step, solid.id, k, ratio, lowest_density_ratio, highest_density_ratio);
   }
   return {};
 }
@@ -187,33 +189,38 @@ std::string range_message(RangeFault fault, std::uint64_t step, std::uint64_t id
       double largest = 0.0;
       for (const std::int64_t component : sums.impulse.component)
         if (std::fabs(static_cast<double>(component)) > std::fabs(largest)) largest = static_cast<double>(component);
-      return fmt::format("step {}: particle {}: impulse {:.3g} m c is too large for its fixed-point range; "
-                         "particles overlap or the step is too long",
-                         step, id, largest * velocity_quantum);
+      return fmt::format(
+          "step {}: particle {}: impulse {:.3g} m c is too large for its fixed-point range; "
+          "particles overlap or the step is too long",
+          step, id, largest * velocity_quantum);
     }
     case RangeFault::velocity:
-      return fmt::format("step {}: particle {}: velocity beyond 32 c, the largest that is held exactly ({:.3g} c before "
-                         "the step); the step is too long",
-                         step, id, square_root(dot(v, v)));
+      return fmt::format(
+          "step {}: particle {}: velocity beyond 32 c, the largest that is held exactly ({:.3g} c before "
+          "the step); the step is too long",
+          step, id, square_root(dot(v, v)));
     case RangeFault::displacement:
-      return fmt::format("step {}: particle {}: moves more than rcut/4 in one step (velocity {:.3g} c before it); "
-                         "the step is too long or the sound speed too low",
-                         step, id, square_root(dot(v, v)));
+      return fmt::format(
+          "step {}: particle {}: moves more than rcut/4 in one step (velocity {:.3g} c before it); "
+          "the step is too long or the sound speed too low",
+          step, id, square_root(dot(v, v)));
     case RangeFault::density:
-      return fmt::format("step {}: particle {}: density {:.3g} PPs per rcut^{} is outside 0.1 to 10 times rest; "
-                         "the fluid tears or collapses: raise the sound speed or resolve the gap",
-                         step, id, static_cast<double>(sums.density) * density_quantum, D);
-    case RangeFault::none: break;
+      return fmt::format(
+          "step {}: particle {}: density {:.3g} PPs per rcut^{} is outside 0.1 to 10 times rest; "
+          "the fluid tears or collapses: raise the sound speed or resolve the gap",
+          step, id, static_cast<double>(sums.density) * density_quantum, D);
+    case RangeFault::none:
+      break;
   }
   return {};
 }
 
-#define MAPPM_INSTANTIATE(D)                                                                                        \
-  template void add_contacts<D>(const Model<D>&, const SolidInStep<D>&, const SolidInStep<D>&, SolidLoad<D>&);      \
-  template void add_face_contacts<D>(const Model<D>&, const SolidInStep<D>&, SolidLoad<D>&);                        \
-  template std::string finish_step<D>(const Model<D>&, std::uint64_t, Solid<D>&, SolidLoad<D>&&, Vec<D, Int128>&);  \
-  template ParticleStep<D> particle_step<D>(const Model<D>&, std::uint64_t);                                        \
-  template std::string range_message<D>(RangeFault, std::uint64_t, std::uint64_t, const Vec<D, double>&,            \
+#define MAPPM_INSTANTIATE(D)                                                                                       \
+  template void add_contacts<D>(const Model<D>&, const SolidInStep<D>&, const SolidInStep<D>&, SolidLoad<D>&);     \
+  template void add_face_contacts<D>(const Model<D>&, const SolidInStep<D>&, SolidLoad<D>&);                       \
+  template std::string finish_step<D>(const Model<D>&, std::uint64_t, Solid<D>&, SolidLoad<D>&&, Vec<D, Int128>&); \
+  template ParticleStep<D> particle_step<D>(const Model<D>&, std::uint64_t);                                       \
+  template std::string range_message<D>(RangeFault, std::uint64_t, std::uint64_t, const Vec<D, double>&,           \
                                         const NeighbourSums<D>&);
 MAPPM_INSTANTIATE(2)
 MAPPM_INSTANTIATE(3)

@@ -7,8 +7,7 @@ namespace {
 template <int D>
 std::uint64_t solid_hash(const Solid<D>& solid) {
   ParticleHash hash(~solid.id);  // solids and PPs never share an id
-  for (int axis = 0; axis < D; ++axis)
-    hash.add(solid.x[axis]).add(solid.momentum[axis]).add(solid.fluid_impulse[axis]);
+  for (int axis = 0; axis < D; ++axis) hash.add(solid.x[axis]).add(solid.momentum[axis]).add(solid.fluid_impulse[axis]);
   for (const Int128 component : solid.angular_momentum.component) hash.add(component);
   for (const double component : solid.orientation.component.component) hash.add(component);
   for (const double density : solid.density) hash.add(density);

@@ -73,9 +73,9 @@ template <int D>
 struct State {
   std::uint64_t step = 0;
   FluidParticles<D> fluid;
-  std::vector<Solid<D>> solids;           // sorted by id
-  Vec<D, Int128> outside_impulse{};       // received from body forces and from what holds fixed solids, iota
-  Vec<D, Int128> start_momentum{};        // total at step 0; the same on every process
+  std::vector<Solid<D>> solids;      // sorted by id
+  Vec<D, Int128> outside_impulse{};  // received from body forces and from what holds fixed solids, iota
+  Vec<D, Int128> start_momentum{};   // total at step 0; the same on every process
 };
 
 /// This process' share of the digest: shares add up modulo 2^64.

@@ -11,8 +11,8 @@ enum class ContactKind { linear, hertz };
 /// Material constants, internal units (rcut, PP mass, c).
 struct ContactLaw {
   ContactKind kind = ContactKind::linear;
-  double stiffness = 0.0;     // linear: k_n = k_t
-  double young = 0.0;         // hertz, of each body; an immovable wall has the same (LIGGGHTS' convention)
+  double stiffness = 0.0;  // linear: k_n = k_t
+  double young = 0.0;      // hertz, of each body; an immovable wall has the same (LIGGGHTS' convention)
   double poisson = 0.0;
   double restitution = 1.0;
   double friction = 0.0;
@@ -26,12 +26,12 @@ ContactLaw make_contact_law(ContactKind kind, double stiffness, double young, do
 /// Two balls i and j. A plane is a ball j of infinite radius and mass (inverse_* = 0).
 template <int D>
 struct ContactPair {
-  Vec<D, double> normal;           // unit vector from j to i
-  double overlap;                  // > 0, rcut
-  Vec<D, double> velocity;         // of i minus j at the contact point, c
+  Vec<D, double> normal;    // unit vector from j to i
+  double overlap;           // > 0, rcut
+  Vec<D, double> velocity;  // of i minus j at the contact point, c
   double inverse_mass_i, inverse_mass_j;
   double inverse_radius_i, inverse_radius_j;
-  Vec<D, double> stretch;          // tangential spring of the step before
+  Vec<D, double> stretch;  // tangential spring of the step before
 };
 
 template <int D>

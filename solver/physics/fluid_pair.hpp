@@ -16,12 +16,12 @@ namespace mappm {
 /// Constants of the pair law, folded once. Internal units: rcut = 1, PP mass = 1, c = 1.
 template <int D>
 struct PairLaw {
-  Vec<D, double> length;        // length of one position quantum, per axis
-  double force;                 // G scale * dt / iota: profile to impulse quanta
-  double viscosity;             // mu
-  Vec<D, double> shift;         // impulse quanta of p_s = 1 to displacement in position quanta, per axis
-  double weight;                // W scale / density quantum
-  double rate;                  // -W'/r scale * dt / density quantum
+  Vec<D, double> length;  // length of one position quantum, per axis
+  double force;           // G scale * dt / iota: profile to impulse quanta
+  double viscosity;       // mu
+  Vec<D, double> shift;   // impulse quanta of p_s = 1 to displacement in position quanta, per axis
+  double weight;          // W scale / density quantum
+  double rate;            // -W'/r scale * dt / density quantum
 };
 
 /// What the law reads of one pair. `d` is the exact difference of positions in quanta, i minus j; `v` of velocities.
@@ -55,8 +55,8 @@ MAPPM_INLINE Real cut_distance(const Vec<D, Real>& r) {
 
 /// `beta` is 1 between PPs and `no_slip_factor` between a PP and an FP.
 template <class Kernel, bool transport, int D, class Real>
-MAPPM_INLINE PairResult<D, Real> fluid_pair(const PairLaw<D>& law, const FluidPair<D, Real>& pair, const Vec<D, Real>& r,
-                               const Real& q, const Real& beta) {
+MAPPM_INLINE PairResult<D, Real> fluid_pair(const PairLaw<D>& law, const FluidPair<D, Real>& pair,
+                                            const Vec<D, Real>& r, const Real& q, const Real& beta) {
   const KernelProfile<Real> kernel = Kernel::template at<Real>(q);
   const Real g = kernel.gradient * Real(law.force);
   const Real pressure = g * pair.pv2;
@@ -73,7 +73,8 @@ MAPPM_INLINE PairResult<D, Real> fluid_pair(const PairLaw<D>& law, const FluidPa
 
 /// The density that two FPs of different solids give each other: as between PPs, without force.
 template <class Kernel, int D, class Real>
-MAPPM_INLINE Fixed<Real> pair_density(const PairLaw<D>& law, const Vec<D, Real>& r, const Vec<D, Real>& v, const Real& q) {
+MAPPM_INLINE Fixed<Real> pair_density(const PairLaw<D>& law, const Vec<D, Real>& r, const Vec<D, Real>& v,
+                                      const Real& q) {
   const KernelProfile<Real> kernel = Kernel::template at<Real>(q);
   return to_fixed(kernel.weight * Real(law.weight) - kernel.rate * Real(law.rate) * dot(r, v));
 }

@@ -21,9 +21,9 @@ struct NeighbourSums {
 /// Constants of a step, the same for every PP.
 template <int D>
 struct ParticleStep {
-  Vec<D, double> drift;              // dt / length of a position quantum: velocity (c) to displacement (quanta)
-  Vec<D, double> kick;               // impulse of the body force (c, PP mass 1)
-  Vec<D, double> largest_drift;      // `largest_displacement`, in quanta
+  Vec<D, double> drift;          // dt / length of a position quantum: velocity (c) to displacement (quanta)
+  Vec<D, double> kick;           // impulse of the body force (c, PP mass 1)
+  Vec<D, double> largest_drift;  // `largest_displacement`, in quanta
   double self_density;
   double lowest_density, highest_density;
 };

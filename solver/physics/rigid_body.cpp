@@ -62,7 +62,7 @@ AngularVec<D, Int128> torque_impulse(const Vec<D, double>& lever, const Vec<D, d
 
 template <int D>
 RangeFault advance(Solid<D>& solid, const Shape<D>& shape, const SolidImpulse<D>& impulse, double dt,
-             const Vec<D, double>& length) {
+                   const Vec<D, double>& length) {
   if (solid.motion == SolidMotion::fixed) return RangeFault::none;
   const auto momentum = solid.momentum;
   const auto angular_momentum = solid.angular_momentum;

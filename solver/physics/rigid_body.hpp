@@ -14,9 +14,9 @@ namespace mappm {
 /// One frozen particle in the frame of its body.
 template <int D>
 struct FrozenParticle {
-  Vec<D, double> offset;   // from the body's centre of mass, in rcut
-  Vec<D, double> normal;   // outward normal of the surface nearest to it
-  double depth = 0.0;      // below the surface, in rcut
+  Vec<D, double> offset;     // from the body's centre of mass, in rcut
+  Vec<D, double> normal;     // outward normal of the surface nearest to it
+  double depth = 0.0;        // below the surface, in rcut
   double own_density = 0.0;  // what the body's own matter gives to its density: an integer multiple of the quantum
 };
 
@@ -31,11 +31,11 @@ struct Ball {
 /// A shape shared by many SPs: geometry, mass and FPs. Lengths in rcut, mass in PP masses.
 template <int D>
 struct Shape {
-  std::vector<Ball<D>> balls;             // empty for a piece of a wall
+  std::vector<Ball<D>> balls;  // empty for a piece of a wall
   std::vector<FrozenParticle<D>> frozen;
-  double reach = 0.0;                     // radius about the centre that holds all balls and FPs
+  double reach = 0.0;  // radius about the centre that holds all balls and FPs
   double mass = 0.0;
-  double volume = 0.0;                    // of matter that displaces fluid, rcut^D
+  double volume = 0.0;  // of matter that displaces fluid, rcut^D
   bool rotates = true;
   /// Inverse inertia in the body's frame: row-major, 1 entry in the plane, 9 in space.
   Vec<D == 2 ? 1 : 9, double> inverse_inertia;
@@ -55,17 +55,17 @@ enum class SolidMotion : std::uint32_t { free, fixed, moving };
 template <int D>
 struct Solid {
   std::uint64_t id = 0;
-  std::uint32_t shape = 0;      // index in Model::shapes
-  std::uint32_t group = 0;      // bodies of one group are one piece of matter (the pieces of a wall)
+  std::uint32_t shape = 0;  // index in Model::shapes
+  std::uint32_t group = 0;  // bodies of one group are one piece of matter (the pieces of a wall)
   SolidMotion motion = SolidMotion::free;
-  Vec<D, double> x;             // centre of mass, position quanta (integers)
-  Vec<D, Int128> momentum{};            // iota
+  Vec<D, double> x;                          // centre of mass, position quanta (integers)
+  Vec<D, Int128> momentum{};                 // iota
   AngularVec<D, Int128> angular_momentum{};  // iota rcut
   Rotation<D> orientation;
-  Vec<D, Int128> fluid_impulse{};       // received from the fluid since the start, iota
-  Vec<D, Int128> sampled_impulse{};     // fluid_impulse at the last sample: bookkeeping of the series, not in the digest
-  std::vector<double> density;          // of its FPs, one an FP: integer multiples of the density quantum
-  std::vector<Contact<D>> contacts;     // sorted by (partner, own, other)
+  Vec<D, Int128> fluid_impulse{};    // received from the fluid since the start, iota
+  Vec<D, Int128> sampled_impulse{};  // fluid_impulse at the last sample: bookkeeping of the series, not in the digest
+  std::vector<double> density;       // of its FPs, one an FP: integer multiples of the density quantum
+  std::vector<Contact<D>> contacts;  // sorted by (partner, own, other)
 };
 
 /// Linear and angular velocity in units of c and c / rcut.
@@ -93,8 +93,8 @@ PlacedFrozen<D> place(const Solid<D>& solid, const RigidVelocity<D>& velocity, c
 /// Impulses that act on a solid in one step: exact integers.
 template <int D>
 struct SolidImpulse {
-  Vec<D, Int128> linear{};            // iota
-  AngularVec<D, Int128> angular{};    // iota rcut
+  Vec<D, Int128> linear{};          // iota
+  AngularVec<D, Int128> angular{};  // iota rcut
 };
 
 /// Torque impulse of an impulse (iota) that acts on an FP or contact point at `lever` (rcut) from the centre.
@@ -106,6 +106,6 @@ AngularVec<D, Int128> torque_impulse(const Vec<D, double>& lever, const Vec<D, d
 /// any point of which would move more than `largest_displacement` is left as it was: RangeFault::displacement.
 template <int D>
 RangeFault advance(Solid<D>& solid, const Shape<D>& shape, const SolidImpulse<D>& impulse, double dt,
-             const Vec<D, double>& length);
+                   const Vec<D, double>& length);
 
 }  // namespace mappm

@@ -52,7 +52,8 @@ std::vector<Triple> read_array(const Fields& table, const Scene& scene) {
     if (count[axis] < 1.0 || count[axis] != static_cast<double>(static_cast<std::int64_t>(count[axis])))
       table.fail("count", "must be whole numbers of at least 1, one per axis");
     solids *= count[axis];
-    if (solids > static_cast<double>(most_solids)) table.fail("count", fmt::format("makes more than {} solids", most_solids));
+    if (solids > static_cast<double>(most_solids))
+      table.fail("count", fmt::format("makes more than {} solids", most_solids));
     spacing[axis] = scene.box[axis] / count[axis];
     offset[axis] = 0.5 * spacing[axis];
   }

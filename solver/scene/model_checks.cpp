@@ -53,14 +53,16 @@ template <int D>
 void check_images(const Scene& scene, const Model<D>& model) {
   std::vector<double> reaches;  // of every solid that touches others, rcut
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    if (!is_wall(scene.bodies[i])) reaches.insert(reaches.end(), scene.bodies[i].positions.size(), model.shapes[i].reach);
+    if (!is_wall(scene.bodies[i]))
+      reaches.insert(reaches.end(), scene.bodies[i].positions.size(), model.shapes[i].reach);
   std::sort(reaches.rbegin(), reaches.rend());
   const double side = *std::min_element(scene.box.begin(), scene.box.begin() + D);
   if (reaches.size() > 1 && (reaches[0] + reaches[1]) * scene.fluid.cutoff > 0.5 * side)
-    throw InputError(scene.file, "box.size", fmt::format("{}", side),
-                     fmt::format("the two largest solids could touch through two periodic images; with [contact] it must "
-                                 "be at least {:.6g}",
-                                 2.0 * (reaches[0] + reaches[1]) * scene.fluid.cutoff));
+    throw InputError(
+        scene.file, "box.size", fmt::format("{}", side),
+        fmt::format("the two largest solids could touch through two periodic images; with [contact] it must "
+                    "be at least {:.6g}",
+                    2.0 * (reaches[0] + reaches[1]) * scene.fluid.cutoff));
 }
 
 }  // namespace
@@ -71,9 +73,9 @@ void check_margin(const Scene& scene, const Model<D>& model) {
   const double needed = solid_margin(model) * scene.fluid.cutoff;
   for (int axis = 0; axis < D; ++axis)
     if (const double side = scene.box[static_cast<std::size_t>(axis)]; side < needed)
-      throw InputError(scene.file, "box.size", fmt::format("{}", side),
-                       fmt::format("too small for its solids and the reach of their forces; it must be at least {:.6g}",
-                                   needed));
+      throw InputError(
+          scene.file, "box.size", fmt::format("{}", side),
+          fmt::format("too small for its solids and the reach of their forces; it must be at least {:.6g}", needed));
 }
 
 template <int D>

@@ -40,8 +40,8 @@ class SerialEngine {
   NeighbourSearch<D> fluid_cells_, frozen_cells_;
 
   // Of the present step:
-  std::vector<VolumeTerms<double>> volume_;        // of the PPs
-  std::vector<NeighbourSums<D>> sums_;             // of the PPs
+  std::vector<VolumeTerms<double>> volume_;  // of the PPs
+  std::vector<NeighbourSums<D>> sums_;       // of the PPs
   std::vector<SolidInStep<D>> bodies_;
   std::vector<FrozenInStep<D>> frozen_;
   std::vector<NeighbourSums<D>> frozen_sums_;

@@ -183,7 +183,8 @@ TEST(FaceContact, a_ball_beyond_the_middle_of_the_wall_is_left_to_the_other_face
   // A wall of thickness 1 below y = 1. The ball's centre is 3/8 below the face, then 5/8.
   Model<2> model = hand_model<2>();
   model.faces = {{77, 1, 1.0, 1.0 / model.pair.length[1], 1.0, {}}};
-  const Solid<2> shallow = hand_solid(model, 0, 0, {{2.0, 0.625}}, {}), deep = hand_solid(model, 0, 0, {{2.0, 0.375}}, {});
+  const Solid<2> shallow = hand_solid(model, 0, 0, {{2.0, 0.625}}, {}),
+                 deep = hand_solid(model, 0, 0, {{2.0, 0.375}}, {});
   SolidLoad<2> pushed, left;
   add_face_contacts(model, solid_in_step(model, shallow), pushed);
   EXPECT_TRUE(pushed.wall.linear[1] == quanta(137.5));  // overlap 1 3/8
@@ -288,9 +289,10 @@ TEST(FinishStep, a_density_out_of_range_is_reported) {
   solid.density = {100.0, 1.0};
   EXPECT_EQ(finish_step(model, 3, solid, {}, outside), "");
   solid.density = {100.0, 0.5};
-  EXPECT_EQ(finish_step(model, 3, solid, {}, outside),
-            "step 3: solid 4: density at its frozen particle 1 is 0.05 times rest, outside 0.1 to 10; the fluid tears or "
-            "collapses there: raise the sound speed or resolve the gap");
+  EXPECT_EQ(
+      finish_step(model, 3, solid, {}, outside),
+      "step 3: solid 4: density at its frozen particle 1 is 0.05 times rest, outside 0.1 to 10; the fluid tears or "
+      "collapses there: raise the sound speed or resolve the gap");
 }
 
 TEST(ParticleStepConstants, by_hand) {

@@ -164,7 +164,8 @@ TEST(SceneModel, RefusesWhatCannotRun) {
   expect_input_error(built({"fluid.rcut=0.1"}), {"fluid.rcut = 0.1", "exceed fluid.spacing = 0.125"});
   expect_input_error(built({"fluid.spacing=0.01"}), {"fluid.rcut = 0.5", "more than 256"});
   expect_input_error(built({"body.0.radius=1.1"}), {"body.0", "2.2 wide", "box side 2"});
-  expect_input_error(built({"fluid.sound_speed=0.4"}), {"fluid.sound_speed = 0.4", "speed 2"});  // with the rim: 0.5 + 3 x 0.5
+  expect_input_error(built({"fluid.sound_speed=0.4"}),
+                     {"fluid.sound_speed = 0.4", "speed 2"});  // with the rim: 0.5 + 3 x 0.5
   expect_input_error(
       [] {
         make_model<2>(read(one_disc + "[[body]]\nshape = \"disc\"\nradius = 0.5\ndensity = 6.0\n"

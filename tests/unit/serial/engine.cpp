@@ -218,7 +218,8 @@ TEST(SerialEngine, a_solid_out_of_range_is_reported_and_not_thrown) {
   state.solids[1].momentum[0] *= 1000;
   SerialEngine<2> engine(built.model, std::move(state), Neighbours::cells);
   engine.step();
-  EXPECT_EQ(engine.range_error().find("step 0: solid 1: a point of it moves more than rcut/4"), 0u) << engine.range_error();
+  EXPECT_EQ(engine.range_error().find("step 0: solid 1: a point of it moves more than rcut/4"), 0u)
+      << engine.range_error();
 }
 
 }  // namespace
