@@ -15,12 +15,13 @@ from verification.series import Table, read_table
 
 ROOT = Path(__file__).resolve().parent.parent
 
-# Open MPI as root, and with more ranks than cores; ranks that wait give way.
+# Open MPI as root, and with more ranks than cores; threads that wait give way to other ranks.
 MPI_ENVIRONMENT = {
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "OMPI_MCA_hwloc_base_binding_policy": "none",
+    "OMP_WAIT_POLICY": "passive",
 }
 
 

@@ -26,8 +26,10 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// Cells to a cutoff: three trims the candidates best for about 40 neighbours in the plane (measured with bench/).
-constexpr int cells_per_cutoff = 3;
+/// Cells to a cutoff, by measurement (bench/fluid_pass.cpp, 39 and 77 neighbours): in the plane two and three are equal,
+/// in space rows of narrower cells leave more lanes empty and cost a third.
+template <int D>
+constexpr int cells_per_cutoff = D == 2 ? 3 : 2;
 
 template <int D>
 Vec<D, double> in_cutoffs(const Model<D>& model, const Vec<D, double>& x) {
@@ -70,7 +72,7 @@ void ParallelEngine<D>::rebalance() {
 template <int D>
 void ParallelEngine<D>::start_domains() {
   halo_ = std::make_unique<Halo<D>>(model_, domains_, communicator_);
-  grid_.fit(halo_->region(), model_.pair.length, cells_per_cutoff);
+  grid_.fit(halo_->region(), model_.pair.length, cells_per_cutoff<D>);
   if (model_.shapes.empty()) return;
   Vec<D, double> low = in_cutoffs(model_, halo_->region().low), high = in_cutoffs(model_, halo_->region().high);
   double smallest = model_.largest_reach;
