@@ -6,10 +6,11 @@ import tempfile
 import textwrap
 from pathlib import Path
 
-from verification.case import TIERS, CaseError, all_cases, find_case
+from verification.case import TIERS, all_cases, find_case
 from verification.compare import compare
-from verification.judge import CORRECT, run_and_judge
-from verification.solver import ROOT, Options, SolverError
+from verification.errors import CaseError, SolverError
+from verification.result import run_case, run_with
+from verification.solver import ROOT, Options, run
 
 
 def list_cases() -> int:
@@ -18,15 +19,20 @@ def list_cases() -> int:
     return 0
 
 
-def run_one(name: str, overrides: list[str], out: Path | None, ranks: int) -> int:
-    case = find_case(name)
-    folder = out or ROOT / "runs" / case.name
-    _, outcomes = run_and_judge(case, folder, Options(ranks=ranks, overrides=tuple(overrides)))
-    for outcome in outcomes:
-        print(outcome.line)
-    if not outcomes:
-        print(f"{case.name}: ran to its end; its manifest names no observable. Series in {folder}/series.csv")
-    return 0 if all(outcome.verdict == CORRECT for outcome in outcomes) else 1
+def run_one(arguments: argparse.Namespace) -> int:
+    case = find_case(arguments.case)
+    folder = arguments.out or ROOT / "runs"
+    overrides = tuple(arguments.set)
+    if not case.judged:
+        finished = run(case.file, folder / case.name, Options(ranks=arguments.ranks, overrides=overrides))
+        print(f"{case.name}: ran to its end; its manifest names no observable. Series in {finished.folder}/series.csv")
+        return 0
+    if overrides:
+        result = run_with(case, folder, overrides, arguments.ranks)
+    else:
+        result = run_case(case, arguments.tier, folder, arguments.ranks, say=lambda text: print(text, file=sys.stderr))
+    print("\n".join(result.lines))
+    return 0 if result.holds else 1
 
 
 def compare_bits(scene: Path, ranks: list[int], steps: int | None, every: int | None) -> int:
@@ -53,8 +59,10 @@ def _parser() -> argparse.ArgumentParser:
 
     one = commands.add_parser("run", help="run a case and print a line an observable")
     one.add_argument("case", help="name of a folder of cases/, or the path of a scene")
-    one.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="override a key of the scene")
-    one.add_argument("--out", type=Path, help="folder of the run (default runs/CASE)")
+    one.add_argument("--set", metavar="KEY=VALUE", action="append", default=[],
+                     help="override a key of the scene: then it runs alone, without levels, and the goals alone decide")
+    one.add_argument("--tier", choices=TIERS, default="quick", help="full adds the levels that take long")
+    one.add_argument("--out", type=Path, help="folder of the runs (default runs), which come to lie in OUT/CASE")
     one.add_argument("--ranks", type=int, default=1, help="ranks of the parallel solver; 0 is the serial reference")
 
     report = commands.add_parser("report", help="write the report")
@@ -75,7 +83,7 @@ def main() -> int:
         case "list":
             return list_cases()
         case "run":
-            return run_one(arguments.case, arguments.set, arguments.out, arguments.ranks)
+            return run_one(arguments)
         case "compare-bits":
             return compare_bits(arguments.scene, arguments.ranks, arguments.steps, arguments.every)
         case "report":

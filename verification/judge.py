@@ -1,59 +1,210 @@
-"""Verdicts: what a run measured against the reference of its manifest."""
+"""Verdicts. CORRECT: against a reference. CONVERGING: over levels. UNCHANGED: bit by bit (equivalence.py).
 
-from dataclasses import dataclass
-from pathlib import Path
+The tolerance of CORRECT is worked out from uncertainties (ASME V&V 20): |S - D| <= k sqrt(u_num^2 + u_ref^2 + u_input^2)
+with k = 2, and capped by the goal of the manifest, so that a noisy run cannot widen its way to a pass. All u are standard
+uncertainties; 95 % bounds are halved. Where the reference is 0 the observable is itself the error (a norm): its tolerance
+is the goal. Where a manifest offers no source of u_num, the goal alone decides, and the line says so.
+"""
 
-from verification.case import Case, CaseError, Observable
+import importlib.util
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from types import ModuleType
+
+import numpy as np
+
+from verification.case import Case, Observable, Vary
+from verification.errors import CaseError
+from verification.ladder import SAFETY, Convergence, converge, error_order
 from verification.observables import OBSERVABLES, Measured
-from verification.solver import DEFAULT, Options, Run, run
+from verification.solver import Run
 
 CORRECT, WRONG, OPEN = "CORRECT", "WRONG", "NOT ACCEPTED"
+CONVERGING, NOT_CONVERGING, STALLED = "CONVERGING", "NOT CONVERGING", "STALLED"
+COVERAGE = 2.0  # k
 
 
 @dataclass(frozen=True)
 class Outcome:
+    """One observable: what was measured on the finest level, and on the levels below it."""
+
     observable: Observable
     measured: Measured
+    sources: dict[str, float] = field(default_factory=dict)  # standard uncertainties that make up u_num, absolute
+    spacings: tuple[float, ...] = ()  # of the levels, coarse to fine; the spacing or the step
+    levels: tuple[Measured, ...] = ()
+    convergence: Convergence | None = None
+    stalls: str = ""
+
+    @property
+    def scale(self) -> float:
+        """What errors and goals are relative to."""
+        return abs(self.observable.reference) or 1.0
 
     @property
     def error(self) -> float:
         """Relative to the reference; absolute where the reference is zero."""
-        difference = self.measured.value - self.observable.reference
-        return difference / self.observable.reference if self.observable.reference else difference
+        return (self.measured.value - self.observable.reference) / self.scale
+
+    @property
+    def u_num(self) -> float:
+        """Relative, as the error is."""
+        return math.hypot(*self.sources.values()) / self.scale
+
+    @property
+    def uncertainty(self) -> float:
+        """u_val, relative: numerical, of the reference and of the inputs together."""
+        return math.hypot(self.u_num, self.observable.uncertainty / self.scale, self.observable.input / self.scale)
+
+    @property
+    def by_goal_alone(self) -> bool:
+        return self.observable.reference == 0 or set(self.sources) <= {"time"}
+
+    @property
+    def tolerance(self) -> float:
+        if self.by_goal_alone:
+            return self.observable.goal
+        return min(self.observable.goal, COVERAGE * self.uncertainty)
 
     @property
     def verdict(self) -> str:
-        """CORRECT within the goal, which no noise can widen; NOT ACCEPTED where the figure is not one yet."""
         if self.measured.objection:
             return OPEN
-        return CORRECT if abs(self.error) <= self.observable.goal else WRONG
+        return CORRECT if abs(self.error) <= self.tolerance else WRONG
+
+    @property
+    def order(self) -> float:
+        """Observed order: of the error where the reference is exact, of the differences of levels where it is not."""
+        if len(self.levels) < 3:
+            return math.nan
+        if self.observable.uncertainty == 0.0:
+            return error_order(list(self.spacings), [level.value - self.observable.reference for level in self.levels])
+        return self.convergence.order
+
+    @property
+    def convergence_verdict(self) -> str:
+        """Empty where the manifest asks for none."""
+        if self.observable.order is None:
+            return STALLED if self.stalls and len(self.levels) > 2 else ""
+        lowest, highest = self.observable.order
+        return CONVERGING if lowest <= self.order <= highest else NOT_CONVERGING
+
+    @property
+    def holds(self) -> bool:
+        return self.verdict == CORRECT and self.convergence_verdict != NOT_CONVERGING
+
+    def in_words(self, value: float) -> str:
+        return f"{100 * value:.2g} %" if self.observable.reference else f"{value:.2g}"
 
     @property
     def error_text(self) -> str:
         return f"{100 * self.error:+.2f} %" if self.observable.reference else f"{self.error:.2g}"
 
     @property
+    def reason(self) -> str:
+        """Of a verdict other than CORRECT."""
+        if self.verdict == OPEN:
+            return self.measured.objection
+        if self.verdict == CORRECT:
+            return ""
+        if math.isnan(self.error):
+            return "not a number"
+        if abs(self.error) > self.observable.goal:
+            return f"beyond the goal {self.in_words(self.observable.goal)}"
+        return f"within the goal, but not explained by its uncertainty (k u = {self.in_words(self.tolerance)})"
+
+    @property
     def line(self) -> str:
         observable, measured = self.observable, self.measured
-        verdict = self.verdict + (f": {measured.objection}" if measured.objection else "")
-        return (
-            f"{observable.symbol} = {measured.value:.6g} +- {measured.uncertainty:.2g} (reference "
-            f"{observable.reference:g} +- {observable.uncertainty:g}, error {self.error_text}, {verdict})"
+        half_width = COVERAGE * self.u_num * self.scale if self.sources else measured.uncertainty
+        basis = f"goal {self.in_words(observable.goal)}"
+        if not self.by_goal_alone:
+            basis = f"k u = {self.in_words(COVERAGE * self.uncertainty)}, {basis}"
+        text = (
+            f"{observable.symbol} = {measured.value:.6g} +- {half_width:.2g} (reference {observable.reference:g} +- "
+            f"{observable.uncertainty:g}, error {self.error_text}, {self.verdict}"
         )
+        text += f": {self.reason}" if self.reason else f" by {basis}"
+        if self.convergence_verdict:
+            text += f"; {self.convergence_verdict}, observed order {self.order:.2f}"
+            if observable.order:
+                text += f" in [{observable.order[0]:g}, {observable.order[1]:g}]"
+        return text + ")"
 
 
-def judge(case: Case, finished: Run) -> list[Outcome]:
-    """Throws CaseError where the manifest names an observable that does not exist."""
+def _module(case: Case) -> ModuleType | None:
+    """measure.py in the folder of the case, if it has one."""
+    file = case.file.parent / "measure.py"
+    if not file.exists():
+        return None
+    spec = importlib.util.spec_from_file_location(f"case_{case.name}", file)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def measures(case: Case) -> dict[str, Callable[[Run], Measured]]:
+    """Observables by name: those of the case over those that all share."""
+    own = _module(case)
+    return OBSERVABLES | {name: value for name, value in vars(own).items() if callable(value)} if own else OBSERVABLES
+
+
+def measure(case: Case, observable: Observable, finished: Run) -> Measured:
+    known = measures(case)
+    if observable.name not in known:
+        raise CaseError(f"{case.file}: case.observable.name = {observable.name!r}: unknown; define it in "
+                        f"{case.file.parent / 'measure.py'} or take one of {', '.join(OBSERVABLES)}")
+    return known[observable.name](finished)
+
+
+def curves_of(case: Case, finished: Run) -> list:
+    """What measure.py of the case draws: charts of verification/curve.py."""
+    own = _module(case)
+    return own.curves(finished) if own and hasattr(own, "curves") else []
+
+
+def _height(case: Case, finished: Run) -> float:
+    """What levels refine."""
+    return finished.scene["fluid"]["spacing"] if case.refined == "spacing" else finished.record["time_step"]
+
+
+def _varied(vary: Vary, base: Measured, values: list[float]) -> float:
+    """Standard uncertainty from one source of error."""
+    if vary.ratio is None:
+        return float(np.std([base.value, *values], ddof=1))
+    return SAFETY * abs(values[0] - base.value) / (1 - vary.ratio**-vary.order) / COVERAGE
+
+
+def judge(case: Case, tier: str, runs: dict[tuple[str, ...], Run]) -> list[Outcome]:
+    """`runs` by their overrides, those of runner.jobs_of. Throws CaseError where an observable does not exist."""
     outcomes = []
     for observable in case.observables:
-        if observable.name not in OBSERVABLES:
-            raise CaseError(
-                f"{case.file}: case.observable.name = {observable.name!r}: unknown; known are {', '.join(OBSERVABLES)}"
-            )
-        outcomes.append(Outcome(observable, OBSERVABLES[observable.name](finished)))
+        def of(overrides: tuple[str, ...], observable: Observable = observable) -> Measured:
+            return measure(case, observable, runs[overrides])
+
+        finished = [runs[level.overrides] for level in case.levels_of(tier)]
+        levels = [of(level.overrides) for level in case.levels_of(tier)]
+        heights = [_height(case, one) for one in finished]
+        sources, convergence = {"time": levels[-1].uncertainty} if levels[-1].uncertainty else {}, None
+        if len(levels) > 1:
+            convergence = converge(heights, [level.value for level in levels])
+            sources["resolution" if case.refined == "spacing" else "step"] = convergence.gci / COVERAGE
+        base = case.quick_finest().overrides
+        for vary in case.vary:
+            values = [of(base + chosen).value for chosen in vary.sets]
+            sources[vary.source] = _varied(vary, of(base), values)
+        outcomes.append(
+            Outcome(observable, levels[-1], sources, tuple(heights), tuple(levels), convergence, case.stalls)
+        )
     return outcomes
 
 
-def run_and_judge(case: Case, out: Path, options: Options = DEFAULT) -> tuple[Run, list[Outcome]]:
-    finished = run(case.file, out, options)
-    return finished, judge(case, finished)
+def beside(case: Case, runs: dict[tuple[str, ...], Run]) -> list[tuple[str, Outcome]]:
+    """What the manifest asks to measure beside its case, by its label: reported as it is."""
+    base = case.quick_finest().overrides
+    return [
+        (entry.label, Outcome(observable, measure(case, observable, runs[base + entry.overrides])))
+        for entry in case.beside
+        for observable in case.observables
+    ]

@@ -11,6 +11,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from verification.errors import SolverError
 from verification.series import Table, read_table
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -23,10 +24,6 @@ MPI_ENVIRONMENT = {
     "OMPI_MCA_hwloc_base_binding_policy": "none",
     "OMP_WAIT_POLICY": "passive",
 }
-
-
-class SolverError(RuntimeError):
-    """A run that did not end well; carries the solver's own message."""
 
 
 def build_folder() -> Path:

@@ -3,16 +3,16 @@
 from pathlib import Path
 
 from verification.case import find_case
-from verification.judge import CORRECT, Outcome, run_and_judge
-from verification.solver import Options, Run
+from verification.judge import CORRECT, Outcome
+from verification.result import run_with
+from verification.solver import Run
 
 
 def judged(name: str, folder: Path, *overrides: str) -> tuple[Run, dict[str, Outcome]]:
-    """Runs a case with overrides; its outcomes by the name of the observable, printed."""
-    finished, outcomes = run_and_judge(find_case(name), folder, Options(overrides=overrides))
-    for outcome in outcomes:
-        print(outcome.line)
-    return finished, {outcome.observable.name: outcome for outcome in outcomes}
+    """Runs the scene of a case alone, with overrides; its outcomes by the name of the observable, printed."""
+    result = run_with(find_case(name), folder, overrides)
+    print("\n".join(result.lines))
+    return result.finest, {outcome.observable.name: outcome for outcome in result.outcomes}
 
 
 def assert_correct(outcome: Outcome, goal: float) -> None:

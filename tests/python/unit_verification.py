@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.case import CaseError, Observable, all_cases, read_case
+from verification.case import Observable, all_cases, read_case
+from verification.errors import CaseError
 from verification.fits import decay_rate, extrapolate, minima
 from verification.judge import CORRECT, OPEN, WRONG, Outcome
 from verification.observables import OBSERVABLES, Measured

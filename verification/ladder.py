@@ -1,0 +1,58 @@
+"""Grid convergence: observed order, Richardson's value and the grid convergence index.
+
+Celik, Ghia, Roache, Freitas, Coleman and Raad, J. Fluids Eng. 130, 2008, 078001; Roache, J. Fluids Eng. 116, 1994, 405-413.
+Levels run from coarse to fine; h is what is refined, the spacing or the step.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+SAFETY, SAFETY_WITHOUT_ORDER = 1.25, 3.0  # Roache's factors, with three levels that converge and without
+LOWEST_ORDER, HIGHEST_ORDER = 0.5, 4.0  # an observed order is not trusted beyond these in an estimate of an error
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """Of one observable over its levels."""
+
+    order: float  # observed, of the three finest levels; NaN where they do not converge monotonically
+    richardson: float  # value extrapolated to h = 0; NaN where the order is
+    gci: float  # 95 % bound of the error of the finest level, absolute
+
+
+def observed_order(h: list[float], values: list[float]) -> float:
+    """Of the three finest levels; NaN where the values do not approach a limit monotonically."""
+    coarse, medium, fine = values[-3:]
+    r21, r32 = h[-2] / h[-1], h[-3] / h[-2]
+    e21, e32 = medium - fine, coarse - medium
+    if e21 == 0.0 or e32 == 0.0 or e32 / e21 <= 0.0:
+        return math.nan
+    order = abs(math.log(e32 / e21)) / math.log(r21)
+    for _ in range(100):  # fixed point for ratios that differ; exact at once where they are equal
+        ratio = (r21**order - 1) / (r32**order - 1) if order > 0 else 1.0
+        following = math.log(e32 / e21 * ratio) / math.log(r21)
+        if abs(following - order) < 1e-10:
+            break
+        order = following
+    return order if order > 0 else math.nan
+
+
+def error_order(h: list[float], errors: list[float]) -> float:
+    """Slope of log |error| over log h, by least squares over all levels: the order where the exact value is known."""
+    if min(abs(error) for error in errors) == 0.0:
+        return math.inf
+    slope, _ = np.polyfit(np.log(h), np.log(np.abs(errors)), 1)
+    return float(slope)
+
+
+def converge(h: list[float], values: list[float]) -> Convergence:
+    """At least two levels. Without an observed order the index takes first order and the larger factor of safety."""
+    ratio, change = h[-2] / h[-1], abs(values[-2] - values[-1])
+    order = observed_order(h, values) if len(values) > 2 else math.nan
+    if math.isnan(order):
+        return Convergence(order, math.nan, SAFETY_WITHOUT_ORDER * change / (ratio - 1))
+    used = min(max(order, LOWEST_ORDER), HIGHEST_ORDER)
+    richardson = values[-1] + (values[-1] - values[-2]) / (ratio**order - 1)
+    return Convergence(order, richardson, SAFETY * change / (ratio**used - 1))
