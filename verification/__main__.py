@@ -68,6 +68,7 @@ def _parser() -> argparse.ArgumentParser:
     report = commands.add_parser("report", help="write the report")
     report.add_argument("--tier", choices=TIERS, default="quick")
     report.add_argument("--out", type=Path, default=ROOT / "reports" / "out")
+    report.add_argument("--publish", action="store_true", help="also copy page, summary and key figures to reports/published")
 
     bits = commands.add_parser("compare-bits", help="compare digests of the serial reference and the parallel solver")
     bits.add_argument("scene", type=Path)
@@ -89,7 +90,7 @@ def main() -> int:
         case "report":
             from verification.report import write_report  # drawing libraries load slowly
 
-            return write_report(arguments.tier, arguments.out)
+            return write_report(arguments.tier, arguments.out, arguments.publish)
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ class Equivalence:
 class Matrix:
     equal: bool
     lines: list[str]
+    rows: tuple = ()
 
 
 def read_equivalence(table: dict, where: str) -> Equivalence:
