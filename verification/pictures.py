@@ -30,7 +30,7 @@ def _flat(run: Run, which: int) -> tuple[dict[str, np.ndarray], dict[str, np.nda
 
 
 def velocity_field(run: Run, file: Path, which: int = -1) -> None:
-    """Speed of the PPs relative to their mean as coloured points, the solids as grey discs over them.
+    """Speed of the PPs as coloured points, relative to their mean where free solids move with them, the solids as grey discs.
 
     The longer side of the box lies across the picture. Of a scene in space it shows the middle plane.
     """
@@ -41,9 +41,11 @@ def velocity_field(run: Run, file: Path, which: int = -1) -> None:
     def flat(points: np.ndarray) -> np.ndarray:
         return np.column_stack([points[:, across], points[:, up], np.zeros(len(points))])
 
-    speed = np.linalg.norm(fluid["velocity"] - fluid["velocity"].mean(axis=0), axis=1)
+    free = any(body.get("motion", "free") == "free" and body["shape"] != "wall" for body in run.scene.get("body", []))
+    frame = fluid["velocity"].mean(axis=0) if free else 0.0
+    speed = np.linalg.norm(fluid["velocity"] - frame, axis=1)
     unit = run.series.units["fluid_velocity_x"]
-    title = "speed relative to the mean of the fluid" + (f" ({unit})" if unit else "") + "\n"
+    title = ("speed relative to the mean of the fluid" if free else "speed") + (f" ({unit})" if unit else "") + "\n"
 
     bar = 0.16  # of the picture's height, for the scale
     size = (pixels, max(260, round(pixels * height / width / (1 - bar))))
