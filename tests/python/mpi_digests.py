@@ -71,6 +71,17 @@ def test_solids_that_cross_borders_and_turn(tmp_path: Path, scene: str, grids: t
     assert np.all(solids[upright][solids["step"] == STEPS] < 0.999)
 
 
+@pytest.mark.parametrize(
+    ("scene", "grid"), [("fields_2d", "2x2"), ("fields_3d", "1x2x2"), ("cavity", "2x2")]
+)
+def test_fields_disorder_and_walls_of_two_directions(tmp_path: Path, scene: str, grid: str) -> None:
+    variants = [Options(ranks=ranks) for ranks in (0, 1, 2, 3, 4)]
+    variants += [Options(ranks=4, domains=grid), Options(ranks=1, threads=2)]
+    runs = [run(SCENES / f"{scene}.toml", tmp_path / str(i), options) for i, options in enumerate(variants)]
+    assert_all_equal(runs, samples={"fields_2d": 11, "fields_3d": 11, "cavity": 16}[scene])
+    assert ("field of force" in runs[0].record["terms"]) == scene.startswith("fields")
+
+
 def test_the_gas_solid_scene(tmp_path: Path) -> None:
     file = ROOT / "cases" / "gas_solid_small" / "case.toml"
     overrides = ("output.sample=50", "output.snapshot=0", "output.checkpoint=0")
