@@ -109,9 +109,9 @@ TEST(SceneWalls, TouchingWithinRoundingIsNoOverlap) {
 }
 
 TEST(SceneWalls, AnOpenEndIsRefused) {
-  expect_input_error([] { model_of({"body.2.extent.to=0.9583333333"}); },
-                     {"body.2.extent.to = 0.95833", "open to the"});
-  expect_input_error([] { model_of({"body.2.extent.from=0.0416666667"}); },
+  expect_input_error([] { model_of({"body.2.extent.to=0.9166666667"}); },
+                     {"body.2.extent.to = 0.91666", "open to the"});
+  expect_input_error([] { model_of({"body.2.extent.from=0.0833333333"}); },
                      {"body.2.extent.from", "open to the fluid"});
   // A lid that covers half of the side's end.
   expect_input_error(
