@@ -1,6 +1,7 @@
 // The lattice on which PPs start: nodes in the middle of equal cells that divide the box.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -68,6 +69,9 @@ struct Lattice {
   }
 };
 
+/// More nodes than can be numbered (check_box refuses them), and few enough for a 64-bit integer.
+inline constexpr double too_many_nodes = 0x1p51;
+
 /// As many nodes per side as come nearest to the declared spacing.
 template <int D>
 Lattice<D> make_lattice(const Scene& scene) {
@@ -75,7 +79,7 @@ Lattice<D> make_lattice(const Scene& scene) {
   for (int axis = 0; axis < D; ++axis) {
     const double side = scene.box[static_cast<std::size_t>(axis)];
     const double nodes = std::floor(side / scene.fluid.spacing + 0.5);
-    lattice.count[axis] = nodes < 1.0 ? 1 : static_cast<std::uint64_t>(nodes);
+    lattice.count[axis] = static_cast<std::uint64_t>(std::clamp(nodes, 1.0, too_many_nodes));
     lattice.spacing[axis] = side / static_cast<double>(lattice.count[axis]) / scene.fluid.cutoff;
   }
   return lattice;
