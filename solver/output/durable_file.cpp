@@ -75,6 +75,10 @@ void write_durably(const std::filesystem::path& path, const std::string& text) {
   }
 }
 
+void append(const std::filesystem::path& path, const std::string& text) {
+  Descriptor(path, O_WRONLY | O_APPEND).write(text);
+}
+
 void make_folder(const std::filesystem::path& folder) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);

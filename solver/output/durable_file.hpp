@@ -15,6 +15,9 @@ void publish(const std::filesystem::path& path);
 /// Writes `text` to `path` as a whole. Throws InputError; the file that was there before is then untouched.
 void write_durably(const std::filesystem::path& path, const std::string& text);
 
+/// Adds `text` to the end of a file. Throws InputError.
+void append(const std::filesystem::path& path, const std::string& text);
+
 /// Makes a folder and those above it. Throws InputError naming the folder.
 void make_folder(const std::filesystem::path& folder);
 

@@ -177,8 +177,10 @@ std::string Hdf5Reader::text_attribute(const std::string& where, const std::stri
                              H5Aclose);
   if (attribute.id() < 0) refuse("attribute '" + name + "' is missing");
   const Hdf5Handle type(H5Aget_type(attribute.id()), H5Tclose);
-  if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) != 0)
-    refuse("attribute '" + name + "' is no text");
+  const Hdf5Handle space(H5Aget_space(attribute.id()), H5Sclose);
+  if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) != 0 ||
+      H5Sget_simple_extent_npoints(space.id()) != 1)
+    refuse("attribute '" + name + "' is not one text");
   std::string text(H5Tget_size(type.id()), '\0');
   if (H5Aread(attribute.id(), type.id(), text.data()) < 0) refuse(last_cause());
   while (!text.empty() && text.back() == '\0') text.pop_back();
