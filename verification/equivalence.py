@@ -177,6 +177,13 @@ def _series(scene: Path, variant: Variant, steps: int, every: int, folder: Path)
     return run(scene, folder, replace(options, ranks=variant.resumed_on, resume=checkpoint)).series
 
 
+def _missing(variant: Variant) -> str:
+    if variant.options.build is None:
+        return "the programs are not built; ./check builds them"
+    preset = variant.options.build.name
+    return f"not built; cmake --preset {preset} && cmake --build --preset {preset} --target mappm mappm-reference"
+
+
 def _row(variant: Variant, series: Table, reference: Table) -> Row:
     difference = first_difference({"reference": reference, variant.label: series})
     return Row(variant.label, str(series["digest"][-1]), difference=difference and difference[0], samples=len(series))
@@ -191,10 +198,10 @@ def run_matrix(scene: Path, equivalence: Equivalence, out: Path, say: Callable[[
     for index, variant in enumerate(equivalence.variants):
         try:
             program("mappm" if variant.options.ranks else "mappm-reference", variant.options.build)
-        except SolverError as missing:
+        except SolverError:
             if reference is None:
                 raise  # nothing to compare with
-            row = Row(variant.label, skipped=str(missing))
+            row = Row(variant.label, skipped=_missing(variant))
         else:
             series = _series(scene, variant, equivalence.steps, equivalence.every, out / str(index))
             if reference is None:
