@@ -1,9 +1,30 @@
 #include "app/options.hpp"
 
+#include <charconv>
+
 namespace mappm {
 
 const CLI::Validator not_negative(
     [](std::string& text) { return text.starts_with('-') ? "must not be negative" : std::string(); }, "");
+
+namespace {
+
+/// Throws CLI::ValidationError.
+TraceRequest read_trace(const std::string& text) {
+  TraceRequest request;
+  const auto number = [](const char* first, const char* last, std::uint64_t& value) {
+    const auto [end, failed] = std::from_chars(first, last, value);
+    return failed == std::errc{} && end == last;
+  };
+  const std::size_t at = text.find('@');
+  const char *first = text.data(), *last = text.data() + text.size();
+  if (at == std::string::npos || !number(first, first + at, request.particle) ||
+      !number(first + at + 1, last, request.step))
+    throw CLI::ValidationError("--trace", text + ": expected ID@STEP, the id of a PP and a step, as in 1042@36");
+  return request;
+}
+
+}  // namespace
 
 void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("scene", options.scene, "scene to run (TOML)")->required();
@@ -13,6 +34,11 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("--resume", options.resume, "go on from a checkpoint, or from the newest sound one of a folder");
   command.add_option("--set", options.overrides, "override a key of the scene: KEY=VALUE; may be repeated")
       ->allow_extra_args(false);
+  command
+      .add_option_function<std::string>(
+          "--trace", [&options](const std::string& text) { options.trace = read_trace(text); },
+          "write to trace.csv what each partner gives to one PP in one step: ID@STEP")
+      ->type_name("ID@STEP");
   command.add_flag("--quiet", options.quiet, "print nothing but warnings, errors and the last line");
 }
 

@@ -10,6 +10,11 @@
 
 namespace mappm {
 
+/// --trace ID@STEP: what each partner gives to PP `particle` in the step from `step` to `step + 1`.
+struct TraceRequest {
+  std::uint64_t particle = 0, step = 0;
+};
+
 struct RunOptions {
   std::string scene;                   // path of the scene
   std::vector<std::string> overrides;  // KEY=VALUE
@@ -17,6 +22,7 @@ struct RunOptions {
   std::string out;                     // output folder; by default out/<scene name>
   std::string resume;                  // checkpoint, or folder; empty: from the start
   bool quiet = false;
+  std::optional<TraceRequest> trace;
 
   /// The options that a resumed run must be given again.
   std::string repeated() const {

@@ -16,7 +16,7 @@ import pyvista
 
 from verification.solver import MPI_ENVIRONMENT, ROOT, Options, program, run, start
 
-SCENE = Path(__file__).parent / "scenes" / "crossing_2d.toml"
+SCENE = ROOT / "cases" / "crossing_2d" / "case.toml"
 LONG_SCENE = ROOT / "cases" / "gas_solid_small" / "case.toml"
 RANKS = (0, 1, 3)
 
@@ -38,7 +38,7 @@ def test_vtk_reads_the_same_points_from_both_programs(tmp_path: Path) -> None:
         fluid = pyvista.read(finished.snapshots()[-1])
         solids = pyvista.read(finished.snapshots("solids")[-1])
         assert fluid.n_cells == fluid.n_points == finished.record["particles"]
-        assert solids.n_points == 8
+        assert solids.n_points == 12
         assert np.all(fluid.celltypes == pyvista.CellType.VERTEX)
         assert fluid.field_data["TimeValue"][0] == pytest.approx(20 * finished.record["time_step"], rel=1e-15)
         order = np.lexsort((fluid["id"], fluid["solid"]))

@@ -10,10 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from verification.solver import MPI_ENVIRONMENT, Options, program, run
+from verification.solver import MPI_ENVIRONMENT, ROOT, Options, program, run
 
-SCENES = Path(__file__).parent / "scenes"
-SCENE = SCENES / "crossing_2d.toml"
+SCENE = ROOT / "cases" / "crossing_2d" / "case.toml"
 INPUT, RANGE = 2, 3
 
 
@@ -97,7 +96,7 @@ def test_a_missing_key_and_overlapping_solids_name_the_file(tmp_path: Path) -> N
     message = only_error(call(Options(), tmp_path / "out", scene), INPUT)
     assert str(scene) in message
     assert "fluid.viscosity" in message
-    scene.write_text(text.replace("random = { count = 8, seed = 11, gap = 0.01 }",
+    scene.write_text(text.replace("random = { count = 12, seed = 11, gap = 0.01 }",
                                   "positions = [[0.5, 0.5], [0.6, 0.5]]"))
     message = only_error(call(Options(), tmp_path / "out", scene), INPUT)
     assert str(scene) in message
@@ -132,7 +131,9 @@ def test_paths_that_cannot_be_used(tmp_path: Path) -> None:
 
 def test_the_command_line_is_checked_too(tmp_path: Path) -> None:
     for words in ([], ["walk"], ["run"], ["run", str(SCENE), "--speed", "3"], ["run", str(SCENE), "--threads", "0"],
-                  ["run", str(SCENE), "--steps", "-5"], ["run", str(SCENE), "--rebalance", "-1"]):
+                  ["run", str(SCENE), "--steps", "-5"], ["run", str(SCENE), "--rebalance", "-1"],
+                  ["run", str(SCENE), "--trace", "7"], ["run", str(SCENE), "--trace", "7@-1"],
+                  ["run", str(SCENE), "--trace", "7@20", "--steps", "20"]):
         finished = subprocess.run([program("mappm"), *words], cwd=tmp_path, capture_output=True, text=True)
         assert finished.returncode == INPUT
         assert finished.stderr.strip()

@@ -29,6 +29,7 @@ RunRecord record() {
   record.iota = 0.125;
   record.ranks = 4;
   record.domains = {2, 2};
+  record.borders = {{0.0, 0.25, 1.0}, {0.0, 1.5, 2.0}};
   record.particles = 99;
   record.solids = 3;
   record.rate = 1e6;
@@ -48,6 +49,7 @@ TEST(RunRecord, has_every_key_that_readers_rely_on) {
   EXPECT_EQ(json["terms"], nlohmann::json({"fluid", "solids", "contact"}));
   EXPECT_EQ(json["wall_seconds"]["pairs"], 1.5);
   EXPECT_EQ(json["domains"], nlohmann::json({2, 2}));
+  EXPECT_EQ(json["borders"], nlohmann::json({{0.0, 0.25, 1.0}, {0.0, 1.5, 2.0}}));
   EXPECT_EQ(json["scene"]["text"], "name = 'a'\n");
   EXPECT_FALSE(json.contains("message"));
 }
