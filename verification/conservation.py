@@ -44,10 +44,11 @@ class Conservation:
             "momentum - start - impulse": self.momentum,
             "change of the number of PPs": self.particles,
         }
-        return [_line(name, by_step) for name, by_step in kinds.items()]
+        about = f"{self.faces} faces, impulses up to {self.largest_impulse}"
+        return [*(defect_line(name, by_step) for name, by_step in kinds.items()), about]
 
 
-def _line(name: str, by_step: dict[int, int]) -> str:
+def defect_line(name: str, by_step: dict[int, int]) -> str:
     wrong = [step for step, value in by_step.items() if value]
     if not wrong:
         return f"{name}: 0 at all {len(by_step)} samples"
@@ -95,24 +96,31 @@ def _inside(faces: dict[tuple[int, int], Vector]) -> int:
     return _largest(defects)
 
 
-def conservation(run: Run) -> Conservation:
-    """Reads series.csv and faces.csv, for which the run was given --faces."""
-    series, faces = run.series, read_faces(run.folder / "faces.csv")
-    missing = set(series["step"].astype(int)[1:]) ^ set(faces)
-    if missing:
-        raise ValueError(f"{run.folder}: series.csv and faces.csv differ in step {min(missing)}")
+def totals(run: Run) -> tuple[dict[int, int], dict[int, int]]:
+    """(largest |total momentum - start - impulse from outside|, |change of the number of PPs|), by sampled step."""
+    series = run.series
     steps = [int(step) for step in series["step"]]
     columns = [[int(total) for total in series[name]] for name in _axes(series, "momentum_defect")]
-    defects = [_largest([row]) for row in zip(*columns, strict=True)]
     count = series["fluid_particles"]
+    momentum = {step: _largest([row]) for step, row in zip(steps, zip(*columns, strict=True), strict=True)}
+    return momentum, {step: abs(int(n) - int(count[0])) for step, n in zip(steps, count, strict=True)}
+
+
+def conservation(run: Run) -> Conservation:
+    """Reads series.csv and faces.csv, for which the run was given --faces."""
+    momentum, particles = totals(run)
+    faces = read_faces(run.folder / "faces.csv")
+    missing = set(list(momentum)[1:]) ^ set(faces)
+    if missing:
+        raise ValueError(f"{run.folder}: series.csv and faces.csv differ in step {min(missing)}")
     between = [
         vector for by_pair in faces.values() for (r, s), vector in by_pair.items() if s not in (r, ALL)
     ]
     return Conservation(
         opposite={step: _opposite(rows) for step, rows in faces.items()},
         inside={step: _inside(rows) for step, rows in faces.items()},
-        momentum=dict(zip(steps, defects, strict=True)),
-        particles={step: abs(int(n) - int(count[0])) for step, n in zip(steps, count, strict=True)},
+        momentum=momentum,
+        particles=particles,
         faces=len(between),
         largest_impulse=_largest(between),
     )

@@ -10,14 +10,13 @@ from datetime import timedelta
 from pathlib import Path
 
 from verification.case import Case, all_cases, find_case
-from verification.equivalence import run_matrix
 from verification.figures import CaseFigures, case_figures, shown_figures, suite_figures
 from verification.history import changes, errors_of, read_history
 from verification.judge import CORRECT
 from verification.page import write_page, write_summary
 from verification.progress import Progress
 from verification.provenance import checksum, provenance, reference_checksums
-from verification.result import CaseResult, judged
+from verification.result import CaseResult, judged, run_bits
 from verification.runner import Job, cores, jobs_of, run_jobs
 from verification.solver import ROOT, Options, Run
 
@@ -50,11 +49,11 @@ def _judge_all(progress: Progress, cases: list[Case], tier: str, folder: Path) -
     runs = _run_all(progress, cases, tier, folder)
     results = []
     for case in cases:
-        matrix = None
+        bits = None
         if case.equivalence is not None:
             with progress.stage(f"bits of {case.name}") as say:
-                matrix = run_matrix(case.file, case.equivalence, folder / case.name / "matrix", lambda text, say=say: say(text))
-        results.append(judged(case, tier, {key: run for (name, key), run in runs.items() if name == case.name}, matrix))
+                bits = run_bits(case, folder, say)
+        results.append(judged(case, tier, {key: run for (name, key), run in runs.items() if name == case.name}, bits))
     return sorted(results, key=lambda result: result.holds)
 
 

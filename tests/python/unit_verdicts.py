@@ -202,8 +202,10 @@ class Fake:
 def test_a_momentum_defect_and_a_lost_particle_are_seen() -> None:
     exact = {"step": [0, 1], "momentum_defect_x": ["0", "0"], "fluid_particles": [9.0, 9.0]}
     assert not exactness({(): Fake(exact)}).defects
-    assert exactness({(): Fake(exact | {"momentum_defect_x": ["0", "1"]})}).defects == ("fake: momentum_defect_x at 1 samples",)
-    assert exactness({(): Fake(exact | {"fluid_particles": [9.0, 8.0]})}).defects == ("fake: the number of PPs changes",)
+    (defect,) = exactness({(): Fake(exact | {"momentum_defect_x": ["0", "1"]})}).defects
+    assert defect == "fake: momentum - start - impulse: 1 at step 1, wrong at 1 of 2 samples"
+    (defect,) = exactness({(): Fake(exact | {"fluid_particles": [9.0, 8.0]})}).defects
+    assert defect == "fake: change of the number of PPs: 1 at step 1, wrong at 1 of 2 samples"
 
 
 def entry(error: float, uncertainty: float = 0.001, goal: float = 0.02) -> dict:
