@@ -16,7 +16,7 @@ namespace mappm {
 namespace {
 
 struct DomainOptions {
-  std::string grid;  // "2x4"; empty: slabs
+  std::string grid;    // "2x4"; empty: slabs
   bool faces = false;  // the ledger of the faces, at every sample
   ParallelOptions engine;
 };

@@ -196,8 +196,7 @@ void RunLoop<D, E>::make_step() {
   const bool traced = trace.has_value() && trace->step == step();
   if (traced) engine_.trace_next_step(trace->particle);
   stepping_.time([&] { engine_.step(); });
-  if (traced)
-    write_trace(folder_, engine_.last_trace(), setup_.model.terms.transport, trace->particle, setup_.group);
+  if (traced) write_trace(folder_, engine_.last_trace(), setup_.model.terms.transport, trace->particle, setup_.group);
 }
 
 /// A trace of a step that the run does not make would be a file that never comes.
@@ -293,8 +292,8 @@ void RunLoop<D, E>::write_record(const std::string& state, const std::string& me
 }
 
 template <int D, class E>
-requires Engine<E, D>
-std::vector<std::vector<double>> RunLoop<D, E>::borders_in_scene_units() const {
+requires Engine<E, D> std::vector<std::vector<double>> RunLoop<D, E>::borders_in_scene_units()
+const {
   std::vector<std::vector<double>> borders;
   for (int axis = 0; axis < D; ++axis) {
     const double unit = setup_.model.pair.length[axis] * setup_.model.units.length;

@@ -31,8 +31,8 @@ struct Totals {
   Vec<D, Int128> sp_impulse{}, wall_impulse{};                 // from the fluid since the last sample, iota
   Int128 fluid_energy = 0, solid_energy = 0, spin_energy = 0;  // energy_quantum
   Int128 internal_energy = 0;                                  // of the PPs, by compression; energy_quantum
-  AngularVec<D, Int128> angular_momentum{};  // of PPs and free or moving solids, spin included; angular_quantum
-  Vec<D, Int128> momentum{}, outside_impulse{};                // of PPs and solids; iota
+  AngularVec<D, Int128> angular_momentum{};      // of PPs and free or moving solids, spin included; angular_quantum
+  Vec<D, Int128> momentum{}, outside_impulse{};  // of PPs and solids; iota
   Int128 digest_sum = 0;
   double lowest_density = 0.0, highest_density = 0.0;  // over PPs, PPs per rcut^D; NaN where there are none
 

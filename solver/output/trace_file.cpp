@@ -57,8 +57,8 @@ void write_trace(const std::filesystem::path& folder, const MaybeTrace<D>& trace
   });
 }
 
-#define MAPPM_INSTANTIATE(D)                                                                                     \
-  template std::string trace_text<D>(const StepTrace<D>&, bool);                                                 \
+#define MAPPM_INSTANTIATE(D)                                     \
+  template std::string trace_text<D>(const StepTrace<D>&, bool); \
   template void write_trace<D>(const std::filesystem::path&, const MaybeTrace<D>&, bool, std::uint64_t, const Group&);
 MAPPM_INSTANTIATE(2)
 MAPPM_INSTANTIATE(3)

@@ -15,8 +15,8 @@ namespace mappm {
 template <int D>
 std::string trace_text(const StepTrace<D>& trace, bool transport);
 
-/// Collective. Writes folder/trace.csv by the process that has the trace. Throws InputError where no process has one, or
-/// the file cannot be written.
+/// Collective. Writes folder/trace.csv by the process that has the trace. Throws InputError where no process has one,
+/// or the file cannot be written.
 template <int D>
 void write_trace(const std::filesystem::path& folder, const MaybeTrace<D>& trace, bool transport,
                  std::uint64_t particle, const Group& group);

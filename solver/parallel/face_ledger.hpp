@@ -1,5 +1,6 @@
 // The ledger of momentum over the faces of a domain: what its particles received in a step from those of each other
-// domain. Computed outside the pass, from the same law pair by pair, so that the sums of the pass can be held against it.
+// domain. Computed outside the pass, from the same law pair by pair, so that the sums of the pass can be held against
+// it.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +23,7 @@ class FaceLedger {
 
   /// Impulse (iota) that the PPs and FPs in the region received from ghosts, by the rank that owns these, in increasing
   /// order. Across a periodic border that may be the own rank; what it gives itself adds up to zero.
-  std::vector<FaceImpulse<D>> faces(const FluidParticles<D>& fluid,
-                                    const std::vector<FrozenInStep<D>>& frozen) const;
+  std::vector<FaceImpulse<D>> faces(const FluidParticles<D>& fluid, const std::vector<FrozenInStep<D>>& frozen) const;
 
   /// Impulse that the pass summed for all PPs and FPs in the region.
   Vec<D, Int128> received(const FluidParticles<D>& fluid, const FluidPass<D>& pass,

@@ -223,12 +223,13 @@ void FluidPass<D>::for_each_centre(const CellGrid<D>& grid, const Vec<D, int>& r
       if (same_row) range[ranges - 1].first = std::max(range[ranges - 1].first, begin);
     }
     for (std::uint32_t i = begin; i < end; ++i)
-      work(i, [&](auto&& pair_with) __attribute__((always_inline)) {
-        for (std::size_t n = 0; n < ranges; ++n) {
-          const std::uint32_t first = range[n].first <= i && i < range[n].second ? i + 1 : range[n].first;
-          if (first < range[n].second) pair_with(first, range[n].second);
-        }
-      });
+      work(
+          i, [&](auto&& pair_with) __attribute__((always_inline)) {
+            for (std::size_t n = 0; n < ranges; ++n) {
+              const std::uint32_t first = range[n].first <= i && i < range[n].second ? i + 1 : range[n].first;
+              if (first < range[n].second) pair_with(first, range[n].second);
+            }
+          });
   }
 }
 
@@ -237,14 +238,15 @@ template <class Kernel, bool transport>
 void FluidPass<D>::sum_row(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const PairFields<D>& fields,
                            const Vec<D, int>& row) {
   // A call for each particle and range would cost a tenth of the pass, and the compiler would choose it.
-  for_each_centre(grid, row, [&](std::uint32_t i, const auto& for_each_range_of_i) __attribute__((always_inline)) {
-    detail::LaneSums<D> sums{};
-    const PairCentre<D> particle = centre(fluid, i);
-    for_each_range_of_i([&](std::uint32_t first, std::uint32_t last) __attribute__((always_inline)) {
-      pair_row<Kernel, transport, false>(model_.pair, fields, particle, first, last, UnitFactor{}, sums);
-    });
-    add_to_fields(fields, i, total(sums), transport);
-  });
+  for_each_centre(
+      grid, row, [&](std::uint32_t i, const auto& for_each_range_of_i) __attribute__((always_inline)) {
+        detail::LaneSums<D> sums{};
+        const PairCentre<D> particle = centre(fluid, i);
+        for_each_range_of_i([&](std::uint32_t first, std::uint32_t last) __attribute__((always_inline)) {
+          pair_row<Kernel, transport, false>(model_.pair, fields, particle, first, last, UnitFactor{}, sums);
+        });
+        add_to_fields(fields, i, total(sums), transport);
+      });
 }
 
 /// Calls pair_with(first, last) for the ranges of PPs near one FP.
@@ -299,8 +301,8 @@ auto FluidPass<D>::sums_of_pair(const FluidParticles<D>& fluid, const PairCentre
 
 template <int D>
 std::optional<std::vector<PartnerTrace<D>>> FluidPass<D>::trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
-                                                 const std::vector<FrozenInStep<D>>& frozen,
-                                                 std::uint64_t particle) const {
+                                                                const std::vector<FrozenInStep<D>>& frozen,
+                                                                std::uint64_t particle) const {
   std::vector<PartnerTrace<D>> partners;
   const auto keep = [&](const PartnerTrace<D>& partner) {
     if (partner.any()) partners.push_back(partner);

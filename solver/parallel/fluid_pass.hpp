@@ -26,7 +26,7 @@ class FluidPass {
   /// After `sum` and with its arguments: what each partner gave to the PP with this id that lies in the region, every
   /// pair of `sum` taken alone; none where there is no such PP. For an FP `id` is the index of its solid in the step.
   std::optional<std::vector<PartnerTrace<D>>> trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
-                                     const std::vector<FrozenInStep<D>>& frozen,
+                                                    const std::vector<FrozenInStep<D>>& frozen,
                                                     std::uint64_t particle) const;
 
  private:
@@ -47,7 +47,7 @@ class FluidPass {
   PairCentre<D> centre(const FluidParticles<D>& fluid, std::size_t i) const;
   template <class Kernel, bool transport>
   void sum_row(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const PairFields<D>& fields,
-                 const Vec<D, int>& row);
+               const Vec<D, int>& row);
   template <class Kernel, bool transport>
   void sum_frozen(const CellGrid<D>& grid, const PairFields<D>& fields, const FrozenInStep<D>& fp,
                   NeighbourSums<D>& sums) const;

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from verification.solver import MPI_ENVIRONMENT, ROOT, Options, program, run
+from verification.solver import MPI_ENVIRONMENT, Options, program, run
 
-SCENE = ROOT / "cases" / "crossing_2d" / "case.toml"
+SCENES = Path(__file__).parent / "scenes"
+SCENE = SCENES / "random_discs.toml"
 INPUT, RANGE = 2, 3
 
 
@@ -96,7 +97,7 @@ def test_a_missing_key_and_overlapping_solids_name_the_file(tmp_path: Path) -> N
     message = only_error(call(Options(), tmp_path / "out", scene), INPUT)
     assert str(scene) in message
     assert "fluid.viscosity" in message
-    scene.write_text(text.replace("random = { count = 12, seed = 11, gap = 0.01 }",
+    scene.write_text(text.replace("random = { count = 8, seed = 11, gap = 0.01 }",
                                   "positions = [[0.5, 0.5], [0.6, 0.5]]"))
     message = only_error(call(Options(), tmp_path / "out", scene), INPUT)
     assert str(scene) in message

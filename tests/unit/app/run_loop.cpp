@@ -89,7 +89,8 @@ TEST_F(ToyRun, samples_and_ends_with_the_line_that_scripts_read) {
   // step 4, time 4 x 0.5 x 0.125; v = 4/8 x 4; superficial x 2 PPs / 64; energy 2 x (1/2)(1/4) x 128;
   // angular momentum 2 x (1/2)(1/2) x 16, as both PPs lie 1/2 below the middle of the box;
   // momentum 2 x 1/2 = 2^48 iota, all of it from outside
-  EXPECT_TRUE(contains(series(), "\n4,0.25,2,0,0.0625,0,32,0,8,2,1,1,281474976710656,0,281474976710656,0,0,0,")) << series();
+  EXPECT_TRUE(contains(series(), "\n4,0.25,2,0,0.0625,0,32,0,8,2,1,1,281474976710656,0,281474976710656,0,0,0,"))
+      << series();
   EXPECT_TRUE(contains(series(), "\n12,0.75,6,0,"));
   const std::string digest = record()["digest"];
   EXPECT_EQ(printed.rfind("digest " + digest + " step 12 particles 2 ranks 1 particle-steps/s ", 0), 0u) << printed;
@@ -108,7 +109,8 @@ TEST_F(ToyRun, traces_the_step_that_was_asked_for) {
 TEST_F(ToyRun, refuses_a_trace_of_a_step_that_it_does_not_make) {
   options_.trace = TraceRequest{1, 12};
   const std::string message = refusal<InputError>([&] { run(); });
-  EXPECT_TRUE(contains(message, "--trace = 1@12: this run goes from step 0 to 12; choose a step from 0 to 11")) << message;
+  EXPECT_TRUE(contains(message, "--trace = 1@12: this run goes from step 0 to 12; choose a step from 0 to 11"))
+      << message;
   EXPECT_FALSE(fs::exists(folder_ / "run.json"));
 }
 

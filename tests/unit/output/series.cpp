@@ -19,7 +19,8 @@ constexpr const char* si_header =
     "step,time [s],fluid_velocity_x [m/s],fluid_velocity_y [m/s],superficial_velocity_x [m/s],"
     "superficial_velocity_y [m/s],solid_velocity_x [m/s],solid_velocity_y [m/s],slip_x [m/s],slip_y [m/s],"
     "drag_x [N/m],drag_y [N/m],wall_force_x [N/m],wall_force_y [N/m],fluid_energy [J/m],internal_energy [J/m],"
-    "solid_energy [J/m],spin_energy [J/m],angular_momentum [kg m/s],fluid_particles,lowest_density_ratio,highest_density_ratio,"
+    "solid_energy [J/m],spin_energy [J/m],angular_momentum [kg "
+    "m/s],fluid_particles,lowest_density_ratio,highest_density_ratio,"
     "momentum_x,momentum_y,impulse_x,impulse_y,momentum_defect_x,momentum_defect_y,digest";
 
 Columns hand_columns(const UnitNames& units) {
@@ -57,7 +58,10 @@ TEST(Series, of_a_scene_without_solids_has_no_column_of_theirs) {
             "step,time [s],fluid_velocity_x [m/s],fluid_velocity_y [m/s],fluid_velocity_z [m/s],"
             "superficial_velocity_x [m/s],superficial_velocity_y [m/s],superficial_velocity_z [m/s],fluid_energy [J],"
             "internal_energy [J],angular_momentum_x [kg m2/s],angular_momentum_y [kg m2/s],"
-            "angular_momentum_z [kg m2/s],fluid_particles,lowest_density_ratio,highest_density_ratio,momentum_x,momentum_y,momentum_z,impulse_x,impulse_y,impulse_z,"
+            "angular_momentum_z [kg "
+            "m2/"
+            "s],fluid_particles,lowest_density_ratio,highest_density_ratio,momentum_x,momentum_y,momentum_z,impulse_x,"
+            "impulse_y,impulse_z,"
             "momentum_defect_x,momentum_defect_y,momentum_defect_z,digest");
 }
 

@@ -24,8 +24,7 @@ TEST(TraceFile, has_a_row_a_partner_in_the_order_of_their_numbers) {
             "36,1042,PP,90,-1,-2,-3,-4,8\n"
             "36,1042,PP,2077,124,0,3,4,9\n"
             "36,1042,FP,3:17,5,-6,1,2,7\n");
-  EXPECT_EQ(trace_text(StepTrace<2>{36, 1042, {}}, false),
-            "step,particle,kind,partner,impulse_x,impulse_y,density\n");
+  EXPECT_EQ(trace_text(StepTrace<2>{36, 1042, {}}, false), "step,particle,kind,partner,impulse_x,impulse_y,density\n");
 }
 
 TEST(TraceFile, is_written_by_the_process_that_has_the_trace) {
