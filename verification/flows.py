@@ -98,12 +98,6 @@ def amplitudes(run: Run, flow: Flow) -> tuple[np.ndarray, np.ndarray]:
     return np.array(times), np.array(found)
 
 
-def velocity_error(field: Field, flow: Flow, amplitude: float) -> float:
-    """Root mean square of the difference from `amplitude` times the shape, over the root mean square of that."""
-    exact = amplitude * flow.shape(field.points)
-    return float(np.sqrt(np.sum((field.velocity - exact) ** 2) / np.sum(exact**2)))
-
-
 def decay_chart(run: Run) -> Chart:
     """Amplitude of the initial flow against its exact decay."""
     flow = initial_flow(run)
