@@ -22,13 +22,13 @@ def _energy(run: Run) -> tuple[np.ndarray, np.ndarray]:
 
 
 def energy(run: Run) -> Measured:
-    """E / E(0) where the reference has fallen to a quarter: over the reference there."""
+    """Root mean square of the difference of E / E(0) from the reference, until that has fallen to a quarter."""
     time, found = _energy(run)
-    at, exact = reference()
-    quarter = np.interp(-0.25, -exact, at)
-    if time[-1] < quarter:
+    exact = np.interp(time, *reference())
+    until = exact > 0.25
+    if until.all():
         return Measured(float("nan"), float("inf"), "the run ends before the energy is a quarter")
-    return Measured(float(np.interp(quarter, time, found)), 0.0)
+    return Measured(float(np.sqrt(np.mean((found - exact)[until] ** 2))), 0.0)
 
 
 def curves(run: Run) -> list[Chart]:
