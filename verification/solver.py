@@ -135,6 +135,12 @@ def read_points(path: Path) -> dict[str, np.ndarray]:
         return {"points": group["Points"][:]} | {name: data[:] for name, data in group["PointData"].items()}
 
 
+def read_time(path: Path) -> float:
+    """Of a VTKHDF file, scene units."""
+    with h5py.File(path) as file:
+        return float(file["VTKHDF/FieldData/TimeValue"][0])
+
+
 DEFAULT = Options()
 
 
