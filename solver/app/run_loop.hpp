@@ -36,7 +36,8 @@ struct RunSetup {
   const Start<D>& start;
   std::string program;
   std::vector<std::string> warnings;
-  std::vector<int> domains = {};  // an entry an axis; empty for the reference
+  std::string program_options = {};  // those that only this program has, as given: " --threads 2"
+  std::vector<int> domains = {};     // an entry an axis; empty for the reference
   int threads = 1;
 };
 
@@ -76,8 +77,10 @@ class RunLoop {
     try {
       if (!advance()) {
         state = "stopped";
-        message = fmt::format("resume with: {} run {}{} --resume {}", setup_.program, setup_.options.scene,
-                              setup_.options.repeated(), saved_.string());
+        const int ranks = setup_.group.size();
+        message =
+            fmt::format("resume with: {}{} run {}{} --resume {}", ranks > 1 ? fmt::format("mpirun -np {} ", ranks) : "",
+                        setup_.program, setup_.options.repeated(), setup_.program_options, shell_word(saved_.string()));
       }
       remember(measure(setup_.model, engine_.state(), setup_.group));
       write_record(state, message);
