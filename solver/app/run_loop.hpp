@@ -131,7 +131,7 @@ class RunLoop {
 template <int D, class E>
 requires Engine<E, D>
 void RunLoop<D, E>::begin() {
-  const auto& [scene, model, group, options, start, program, warnings, domains, threads] = setup_;
+  const auto& [scene, model, group, options, start, program, warnings, program_options, domains, threads] = setup_;
   on_first(group, [&] { make_folder(folder_); });
   record_.program = program;
   record_.scene_file = scene.file;
