@@ -19,6 +19,14 @@ struct DomainOptions {
   std::string grid;    // "2x4"; empty: slabs
   bool faces = false;  // the ledger of the faces, at every sample
   ParallelOptions engine;
+
+  /// What differs from the defaults, as it is given on the command line.
+  std::string repeated() const {
+    std::string text = grid.empty() ? "" : " --domains " + grid;
+    if (engine.threads != ParallelOptions{}.threads) text += " --threads " + std::to_string(engine.threads);
+    if (engine.rebalance != ParallelOptions{}.rebalance) text += " --rebalance " + std::to_string(engine.rebalance);
+    return text;
+  }
 };
 
 template <int D>
@@ -34,6 +42,7 @@ void run_scene(const Scene& scene, const RunOptions& options, const DomainOption
 
   RunSetup<D> setup{scene, built.model, communicator, options, start, "mappm", built.warnings};
   setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
+  setup.program_options = domain_options.repeated();
   const Vec<D, int> grid = domains.grid();
   setup.domains.assign(grid.component, grid.component + D);
   setup.threads = domain_options.engine.threads;

@@ -1,6 +1,9 @@
 #include "app/options.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
+#include <string_view>
 
 namespace mappm {
 
@@ -25,6 +28,25 @@ TraceRequest read_trace(const std::string& text) {
 }
 
 }  // namespace
+
+std::string shell_word(const std::string& word) {
+  const auto is_plain = [](unsigned char letter) {
+    return std::isalnum(letter) != 0 ||
+           std::string_view("_-./=:,+@%").find(static_cast<char>(letter)) != std::string_view::npos;
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+  std::string quoted = "'";
+  for (const char letter : word) quoted += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+  return quoted + "'";
+}
+
+std::string RunOptions::repeated() const {
+  std::string text = shell_word(scene);
+  for (const std::string& change : overrides) text += " --set " + shell_word(change);
+  if (steps.has_value()) text += " --steps " + std::to_string(*steps);
+  if (quiet) text += " --quiet";
+  return out.empty() ? text : text + " --out " + shell_word(out);
+}
 
 void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("scene", options.scene, "scene to run (TOML)")->required();

@@ -38,7 +38,8 @@ struct RunSetup {
   const Start<D>& start;
   std::string program;
   std::vector<std::string> warnings;
-  std::vector<int> domains = {};  // an entry an axis; empty for the reference
+  std::string program_options = {};  // those that only this program has, as given: " --threads 2"
+  std::vector<int> domains = {};     // an entry an axis; empty for the reference
   int threads = 1;
   bool faces = false;  // write faces.csv; for engines that keep a ledger of faces
 };
@@ -79,8 +80,10 @@ class RunLoop {
     try {
       if (!advance()) {
         state = "stopped";
-        message = fmt::format("resume with: {} run {}{} --resume {}", setup_.program, setup_.options.scene,
-                              setup_.options.repeated(), saved_.string());
+        const int ranks = setup_.group.size();
+        message =
+            fmt::format("resume with: {}{} run {}{} --resume {}", ranks > 1 ? fmt::format("mpirun -np {} ", ranks) : "",
+                        setup_.program, setup_.options.repeated(), setup_.program_options, shell_word(saved_.string()));
       }
       remember(measure(setup_.model, engine_.state(), setup_.group));
       write_record(state, message);
@@ -135,7 +138,8 @@ class RunLoop {
 template <int D, class E>
 requires Engine<E, D>
 void RunLoop<D, E>::begin() {
-  const auto& [scene, model, group, options, start, program, warnings, domains, threads, faces] = setup_;
+  const auto& [scene, model, group, options, start, program, warnings, program_options, domains, threads, faces] =
+      setup_;
   check_trace();
   on_first(group, [&] { make_folder(folder_); });
   record_.program = program;

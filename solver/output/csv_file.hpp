@@ -15,8 +15,8 @@ class CsvFile {
   /// beyond `resumed_step` are dropped. Throws InputError where the file cannot be written or has another header.
   CsvFile(std::filesystem::path path, const std::string& header, std::optional<std::uint64_t> resumed_step);
 
-  /// Adds rows (each ended by a newline) and hands them to the operating system. Throws InputError; the table then ends with the
-  /// row before.
+  /// Adds rows (each ended by a newline) and hands them to the operating system. Throws InputError; the table then ends
+  /// with the row before.
   void add(const std::string& rows);
 
  private:

@@ -5,6 +5,7 @@ Oracle: the same scene run without interruption by the serial reference; VTK's o
 
 import json
 import os
+import shlex
 import signal
 import subprocess
 import time
@@ -72,7 +73,11 @@ def test_a_signal_ends_a_run_that_can_be_resumed(tmp_path: Path, ranks: int) -> 
     stdout, _ = process.communicate(timeout=60)
     if ranks < 2:  # mpirun itself ends with 1 where it is asked to end
         assert process.returncode == 0
-    assert "--resume" in stdout
+    hint = next(line for line in stdout.splitlines() if "resume with: " in line).partition("resume with: ")[2]
+    words = shlex.split(hint)
+    assert words[0] == ("mpirun" if ranks > 1 else "mappm" if ranks else "mappm-reference")
+    assert Path(words[words.index("--resume") + 1]).exists()
+    assert "output.sample=10" in words
     record = json.loads((tmp_path / "run.json").read_text())
     assert record["state"] == "stopped"
 

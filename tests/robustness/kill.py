@@ -50,6 +50,11 @@ def last_whole_row(table: Path) -> tuple[int, bool]:
     return (int(rows[-1].partition(",")[0]) if rows else 0), bool(rest)
 
 
+def partial_files(folder: Path) -> dict[Path, int]:
+    """Files half written, and when they were last written to."""
+    return {path: path.stat().st_mtime_ns for path in folder.rglob("*.partial")}
+
+
 def first_step(folder: Path) -> tuple[int, int] | None:
     """Where the run that wrote run.json began, and the identity of that file."""
     path = folder / "run.json"
@@ -106,6 +111,8 @@ class Campaign:
             enough = self.tally.kills.total() >= times
             if self.launch(out, ranks, enough):
                 break
+            if not checkpoint_steps(out):
+                self.tally.from_the_start += 1
             ranks = self.random.choice([other for other in self.rank_choices if other != ranks] or [ranks])
         self.compare(out, ranks)
         shutil.rmtree(out)
@@ -116,8 +123,7 @@ class Campaign:
         kept = checkpoint_steps(out)
         before = first_step(out)
         resume = out if kept else None
-        if out.exists() and not kept:
-            self.tally.from_the_start += 1
+        partial_before = partial_files(out)  # left by kills before this one
         process = start(SCENE, out, Options(ranks=ranks, steps=STEPS, overrides=OVERRIDES, resume=resume))
         moment = self.random.uniform(0.0, LONGEST_WAIT)
         aimed = self.random.random() < AIMED_SHARE
@@ -129,7 +135,7 @@ class Campaign:
                 wait_for_checkpoint(out, process)
             hit = self.strike(process, ranks)
             self.check_start(out, kept, before, must=False)
-            self.after_kill(out, ranks, hit, moment)
+            self.after_kill(out, ranks, hit, moment, partial_before)
             return False
         promise(process.returncode == 0, f"a resumed run ends well:\n{stderr}")
         promise("instead" not in stderr, f"every checkpoint that a kill left is sound:\n{stderr}")
@@ -156,14 +162,15 @@ class Campaign:
         elif now is not None:
             promise(now[0] == max(kept, default=0), f"a run resumes at step {max(kept, default=0)}, not {now[0]}")
 
-    def after_kill(self, out: Path, ranks: int, hit: str, moment: float) -> None:
+    def after_kill(self, out: Path, ranks: int, hit: str, moment: float, partial_before: dict[Path, int]) -> None:
         """Nothing that was there before the kill is lost but the steps since the last checkpoint."""
         newest = max(checkpoint_steps(out), default=0)
         reached, row_cut = last_whole_row(out / "series.csv")
         # A row is written before the checkpoint of its step: the checkpoint of an earlier step was there by then.
         promised = (reached - 1) // INTERVAL * INTERVAL if reached else 0
         promise(newest >= promised, f"step {reached} was reached, the checkpoint of {promised} is gone: {newest} is left")
-        partial = {path.parent.name if path.parent != out else path.name for path in out.rglob("*.partial")}
+        own = [path for path, written in partial_files(out).items() if partial_before.get(path) != written]
+        partial = {path.parent.name if path.parent != out else path.name for path in own}
         kinds = sorted(partial | ({"row of series.csv"} if row_cut else set()))
         lost = max(reached - newest, 0)
         tally = self.tally

@@ -156,7 +156,8 @@ TEST_F(ToyRun, resumed_leaves_the_files_of_one_that_was_not_interrupted) {
 
 TEST_F(ToyRun, stops_at_a_signal_with_a_checkpoint_and_says_how_to_go_on) {
   scene_.run.steps = 1000;
-  options_.overrides = {"a.b=1"};
+  options_.overrides = {"a.b=1", "c=it's two"};
+  options_.steps = 900;
   const std::string printed = run(0, 5);
   const auto json = record();
   EXPECT_EQ(json["state"], "stopped");
@@ -166,7 +167,8 @@ TEST_F(ToyRun, stops_at_a_signal_with_a_checkpoint_and_says_how_to_go_on) {
   const std::string path = (folder_ / fmt::format("checkpoints/checkpoint_{:09}.h5", stopped)).string();
   EXPECT_TRUE(fs::exists(path));
   EXPECT_TRUE(
-      contains(printed, "resume with: toy run toy.toml --set 'a.b=1' --out " + options_.out + " --resume " + path))
+      contains(printed, "resume with: toy run toy.toml --set a.b=1 --set 'c=it'\\''s two' --steps 900 --quiet --out " +
+                            options_.out + " --resume " + path))
       << printed;
   EXPECT_TRUE(contains(printed.substr(printed.rfind('\n', printed.size() - 2)), "\ndigest ")) << "the last line";
 }

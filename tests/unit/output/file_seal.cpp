@@ -62,7 +62,9 @@ TEST_F(FileSeal, is_the_same_on_any_number_of_processes) {
   write_text(path_, sealed.substr(0, 5'000'001));
   testing_tools::ThreadGroup(3).run([&](const Group& group) { seal_file(path_, group); });
   EXPECT_EQ(text_of(path_), sealed);
-  write_text(path_, "y" + sealed.substr(1));
+  std::string altered = sealed;
+  altered.front() = 'y';
+  write_text(path_, altered);
   testing_tools::ThreadGroup(3).run([&](const Group& group) {
     EXPECT_TRUE(contains(refusal<InputError>([&] { check_seal(path_, group); }), "sealed: is damaged: its bytes"));
   });
