@@ -4,12 +4,15 @@ Exit code 0: all caught; 1: one survived, or a detector fails without a fault; 2
 """
 
 import argparse
+import fcntl
 import json
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -132,14 +135,31 @@ def chosen(mutants: list[Mutant], quick: bool, names: list[str]) -> list[Mutant]
     return picked
 
 
-def main() -> int:
+@contextmanager
+def only_run() -> Iterator[None]:
+    """Waits until no other run of this program works on the copy of the sources."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    with (FOLDER / "lock").open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            print("waiting for another run to end", file=sys.stderr, flush=True)
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def parsed() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python3 -m tests.mutation", description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="only the faults marked quick")
     parser.add_argument("--only", metavar="ID", action="append", default=[], help="only this fault; may be repeated")
     parser.add_argument("--jobs", type=int, default=2, help="detectors and compilers side by side (default 2)")
     parser.add_argument("--out", type=Path, help="JSON file of the results (default reports/published/mutation.json "
                         "for all faults, build/mutation/part.json for some)")
-    arguments = parser.parse_args()
+    return parser.parse_args()
+
+
+def main() -> int:
+    arguments = parsed()
     everything = read_manifest()
     mutants = chosen(everything, arguments.quick, arguments.only)
     detectors = {text: Detector(text) for mutant in everything for text in mutant.caught_by}
@@ -167,7 +187,8 @@ def main() -> int:
 
 if __name__ == "__main__":
     try:
-        sys.exit(main())
+        with only_run():
+            sys.exit(main())
     except (ManifestError, BuildError, SolverError) as error:
         print(f"mutation: {error}", file=sys.stderr)
         sys.exit(2)
