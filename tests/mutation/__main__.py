@@ -20,7 +20,8 @@ from tests.mutation.detectors import Detector, Result, run_detector
 from tests.mutation.manifest import ROOT, ManifestError, Mutant, read_manifest
 from tests.mutation.tree import BUILD, FOLDER, BuildError, build_tree, write_planted, write_tree
 from verification.compare import compare
-from verification.solver import Options, SolverError
+from verification.errors import SolverError
+from verification.solver import Options
 
 PUBLISHED = ROOT / "reports" / "published" / "mutation.json"
 LONGEST = 300.0  # seconds that a detector may take without a fault

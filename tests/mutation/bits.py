@@ -5,7 +5,8 @@ from pathlib import Path
 
 from tests.mutation.manifest import ROOT
 from verification.compare import compare
-from verification.solver import Options, SolverError
+from verification.errors import SolverError
+from verification.solver import Options
 
 
 def main(out: str, scene: str, ranks: str, steps: str, domains: str | None = None) -> int:

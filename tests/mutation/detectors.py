@@ -1,6 +1,7 @@
 """What can catch a fault: a case, an equality of bits or a test, named by one line of the manifest.
 
-    case NAME [KEY=VALUE ...]              the judge's verdict on a case, with overrides that make it cheap
+    case NAME [KEY=VALUE ...]              the judge's verdicts on a case; with overrides, if only of a value by
+                                           itself, the scene alone without its levels, which is cheap
     bits SCENE RANKS STEPS [DOMAINS]       digests of the parallel solver and the serial reference at ten samples;
                                            SCENE is a file of tests/python/scenes
     pytest FILE::TEST                      of tests/python
@@ -105,7 +106,8 @@ def run_detector(detector: Detector, number: int | None, tree: Path, timeout: fl
     """With the fault of that number awake, or none; `tree`: where the Python part lies."""
     environment = os.environ | MPI_ENVIRONMENT | {"MAPPM_BUILD": str(BUILD), "PYTHONPATH": str(tree),
                                                   "PYTHONDONTWRITEBYTECODE": "1"}
-    environment.pop("MAPPM_MUTANT", None)
+    for name in ("MAPPM_MUTANT", "MAPPM_CASES"):
+        environment.pop(name, None)
     if number is not None:
         environment["MAPPM_MUTANT"] = str(number)
     began = time.monotonic()

@@ -127,10 +127,6 @@ def test_the_judge_lists_and_runs_cases(tmp_path: Path) -> None:
     assert judged.returncode == 0, judged.stderr
     assert judged.stdout == "max(|v|) / c = 0 +- 0 (reference 0 +- 0, error 0, CORRECT)\n"
     assert verification("run", "nothing").returncode != 0
-    # A fluid in uniform motion is not at rest: a wrong verdict ends the judge with 1.
-    moved = verification("run", "rest", "--out", str(tmp_path), "--set", "run.steps=10", "--set", "fluid.velocity=[0.01,0]")
-    assert moved.returncode == 1
-    assert "WRONG" in moved.stdout
 
 
 def test_compare_bits(tmp_path: Path) -> None:
