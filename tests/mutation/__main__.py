@@ -1,4 +1,4 @@
-"""python3 -m tests.mutation: plants every fault of mutants.toml, one at a time, and sees it caught.
+"""python3 -m tests.mutation: plants every fault of mutants/, one at a time, and sees it caught.
 
 Exit code 0: all caught; 1: one survived, or a detector fails without a fault; 2: the manifest or the build is at fault.
 """
@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tests.mutation.detectors import Detector, Result, run_detector
-from tests.mutation.manifest import ROOT, ManifestError, Mutant, read_manifest
+from tests.mutation.manifest import ROOT, ManifestError, Mutant, read_manifests
 from tests.mutation.tree import BUILD, FOLDER, BuildError, build_tree, write_planted, write_tree
 from verification.compare import compare
 from verification.errors import SolverError
@@ -100,7 +100,8 @@ def hunt_all(mutants: list[Mutant], alone: dict[str, Result], jobs: int) -> list
         for future in as_completed(futures):
             outcome = future.result()
             outcomes[outcome.mutant.id] = outcome
-            progress.note(f"{outcome.mutant.id}: " + (f"caught by {outcome.detector}" if outcome.caught else "SURVIVED"))
+            how = f"caught by {outcome.detector}" if outcome.caught else "SURVIVED"
+            progress.note(f"{outcome.mutant.id}: {how}")
     return [outcomes[mutant.id] for mutant in mutants]
 
 
@@ -121,7 +122,8 @@ def record(outcomes: list[Outcome]) -> dict:
     rows = [{"id": o.mutant.id, "group": o.mutant.group, "what": o.mutant.what, "file": o.mutant.file,
              "caught": o.caught, "detector": o.detector, "message": o.message, "seconds": round(o.seconds, 2)}
             for o in outcomes]
-    return {"commit": commit.stdout.strip() or "unknown", "command": " ".join(["python3 -m tests.mutation", *sys.argv[1:]]),
+    command = " ".join(["python3 -m tests.mutation", *sys.argv[1:]])
+    return {"commit": commit.stdout.strip() or "unknown", "command": command,
             "date": time.strftime("%Y-%m-%dT%H:%M:%S%z"), "number": len(rows),
             "caught": sum(row["caught"] for row in rows), "mutants": rows}
 
@@ -129,7 +131,7 @@ def record(outcomes: list[Outcome]) -> dict:
 def chosen(mutants: list[Mutant], quick: bool, names: list[str]) -> list[Mutant]:
     unknown = set(names) - {mutant.id for mutant in mutants}
     if unknown:
-        raise ManifestError(f"--only {', '.join(sorted(unknown))}: no such fault; see mutants.toml")
+        raise ManifestError(f"--only {', '.join(sorted(unknown))}: no such fault; see tests/mutation/mutants")
     picked = [mutant for mutant in mutants if (mutant.quick or not quick) and (mutant.id in names or not names)]
     if not picked:
         raise ManifestError("no fault is chosen")
@@ -161,7 +163,7 @@ def parsed() -> argparse.Namespace:
 
 def main() -> int:
     arguments = parsed()
-    everything = read_manifest()
+    everything = read_manifests()
     mutants = chosen(everything, arguments.quick, arguments.only)
     detectors = {text: Detector(text) for mutant in everything for text in mutant.caught_by}
     for detector in detectors.values():

@@ -1,8 +1,7 @@
-"""The planted faults: tests/mutation/mutants.toml.
+"""The planted faults: tests/mutation/mutants/GROUP.toml.
 
     [[mutant]]
     id = "viscosity-sign"
-    group = "physics"
     what = "the viscous force drives apart what it should slow down"
     file = "solver/physics/fluid_pair.hpp"
     original = "pressure * r[axis] - friction * pair.v[axis]"
@@ -21,9 +20,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-MANIFEST = Path(__file__).parent / "mutants.toml"
+MANIFESTS = Path(__file__).parent / "mutants"
 KINDS = ("expression", "statement")
-KEYS = {"id": str, "group": str, "what": str, "file": str, "original": str, "faulty": str, "caught_by": list}
+KEYS = {"id": str, "what": str, "file": str, "original": str, "faulty": str, "caught_by": list}
 OPTIONAL = {"kind": str, "within": str, "quick": bool, "hang": bool}
 
 
@@ -76,7 +75,7 @@ class Mutant:
         return text[:start] + self.faulty + text[end:]
 
 
-def _mutant(table: dict) -> Mutant:
+def _mutant(table: dict, group: str) -> Mutant:
     name = table.get("id", "an entry without id")
     for key, kind in KEYS.items():
         if not isinstance(table.get(key), kind) or not table[key] and key != "faulty":
@@ -84,15 +83,19 @@ def _mutant(table: dict) -> Mutant:
     for key, value in table.items():
         if key not in KEYS and not isinstance(value, OPTIONAL.get(key, ())):
             raise ManifestError(f"{name}: {key} is unknown or of the wrong type")
-    mutant = Mutant(**table | {"caught_by": tuple(table["caught_by"])})
+    mutant = Mutant(**table | {"group": group, "caught_by": tuple(table["caught_by"])})
     if mutant.kind not in KINDS:
         raise ManifestError(f"{name}: kind = {mutant.kind!r}: unknown; known are {', '.join(KINDS)}")
     return mutant
 
 
-def read_manifest(file: Path = MANIFEST, root: Path = ROOT) -> list[Mutant]:
-    """All faults, each with a place in the sources as they are. Throws ManifestError, which lists all that have none."""
-    mutants = [_mutant(table) for table in tomllib.loads(file.read_text())["mutant"]]
+def read_manifests(folder: Path = MANIFESTS, root: Path = ROOT) -> list[Mutant]:
+    """All faults, each with its place in the sources as they are. Throws ManifestError; it lists all that have none."""
+    mutants = [
+        _mutant(table, file.stem)
+        for file in sorted(folder.glob("*.toml"))
+        for table in tomllib.loads(file.read_text())["mutant"]
+    ]
     if len({mutant.number for mutant in mutants}) < len(mutants):
         raise ManifestError("two faults share an id, or the number made of it; rename one")
     problems = []

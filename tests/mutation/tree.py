@@ -14,6 +14,7 @@ FOLDER = ROOT / "build" / "mutation"
 TREE = FOLDER / "tree"
 BUILD = FOLDER / "build"
 COPIED = ("CMakeLists.txt", "cmake", "solver", "bench", "tests")
+BUILT_FROM = (".cpp", ".hpp", ".txt", ".cmake")
 PYTHON_PART = ("verification", "cases", "tests/python", "reports/templates", "pyproject.toml")
 HEADER = "solver/base/mutant.hpp"
 HEADER_TEXT = """// Which fault of tests/mutation is awake: the number in MAPPM_MUTANT; none if it is not set.
@@ -46,10 +47,8 @@ def _sources(test_files: set[str]) -> dict[str, str]:
         for path in [top] if top.is_file() else sorted(top.rglob("*")):
             relative = path.relative_to(ROOT).as_posix()
             is_test = relative.startswith(("tests/unit/", "tests/mpi/")) and path.suffix == ".cpp"
-            if not path.is_file() or relative.startswith(("tests/mutation/", "tests/python/")):
-                continue
-            if not is_test or relative in test_files:
-                texts[relative] = path.read_text(errors="surrogateescape")
+            if path.suffix in BUILT_FROM and path.is_file() and (not is_test or relative in test_files):
+                texts[relative] = path.read_text()
     return texts
 
 
@@ -64,10 +63,10 @@ def write_tree(mutants: list[Mutant], test_files: set[str]) -> None:
     texts[HEADER] = HEADER_TEXT
     for name, text in texts.items():
         path = TREE / name
-        if path.exists() and path.read_text(errors="surrogateescape") == text:
+        if path.exists() and path.read_text() == text:
             continue
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, errors="surrogateescape")
+        path.write_text(text)
     for path in TREE.rglob("*"):
         if path.is_file() and path.relative_to(TREE).as_posix() not in texts:
             path.unlink()

@@ -1,20 +1,21 @@
 """The planted faults themselves. Oracles: texts written here; for the manifest, the sources as they stand."""
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from tests.mutation.__main__ import chosen, hunt
-from tests.mutation.detectors import Detector, Result, first_reason
-from tests.mutation.manifest import ManifestError, Mutant, guarded, read_manifest
+from tests.mutation.detectors import Detector, Result, first_reason, run_detector
+from tests.mutation.manifest import ManifestError, Mutant, guarded, read_manifests
 
 TEXT = "int a = b + c;\nint d = b + e;\n"
 SIGN = Mutant("sign", "physics", "what", "a.cpp", "b + c", "b - c", ("gtest a A.*",))
 
 
 def test_every_fault_has_its_place_in_the_sources_and_a_detector() -> None:
-    mutants = read_manifest()
+    mutants = read_manifests()
     assert len(mutants) >= 40
     assert {"physics", "integration", "halo", "migration", "home", "solids", "contact", "input", "output",
             "verdict"} <= {mutant.group for mutant in mutants}
@@ -51,17 +52,17 @@ def test_a_place_must_be_the_only_one(original: str, within: str, start: int | N
 
 def test_a_manifest_that_fits_no_more_names_all_that_is_lost(tmp_path: Path) -> None:
     (tmp_path / "a.cpp").write_text(TEXT)
-    entry = '[[mutant]]\nid = "{}"\ngroup = "g"\nwhat = "w"\nfile = "{}"\noriginal = "{}"\nfaulty = ""\ncaught_by = ["d"]\n'
-    manifest = tmp_path / "mutants.toml"
+    entry = '[[mutant]]\nid = "{}"\nwhat = "w"\nfile = "{}"\noriginal = "{}"\nfaulty = ""\ncaught_by = ["d"]\n'
+    manifest = tmp_path / "physics.toml"
     manifest.write_text(entry.format("one", "a.cpp", "gone") + entry.format("two", "b.cpp", "b")
                         + entry.format("three", "a.cpp", "c"))
     with pytest.raises(ManifestError) as caught:
-        read_manifest(manifest, tmp_path)
+        read_manifests(tmp_path, tmp_path)
     assert str(caught.value).splitlines() == ["one: 'gone' stands 0 times in a.cpp, not once; mend the entry",
                                               "two: b.cpp is missing; mend the entry"]
     manifest.write_text(entry.format("one", "a.cpp", "c") + 'colour = "red"\n')
     with pytest.raises(ManifestError, match="one: colour is unknown"):
-        read_manifest(manifest, tmp_path)
+        read_manifests(tmp_path, tmp_path)
 
 
 def test_only_faults_that_exist_are_chosen() -> None:
@@ -95,3 +96,29 @@ def test_a_fault_is_caught_by_a_failure_alone(monkeypatch: pytest.MonkeyPatch) -
     assert survivor.message == "passes: passed; trouble: did not end"
     outcome = hunt(replace(SIGN, caught_by=("passes", "fails")), results)
     assert (outcome.detector, outcome.message, outcome.seconds) == ("fails", "wrong", 2.0)
+
+
+class Script(Detector):
+    """A detector that runs the Python text of its last word."""
+
+    def command(self, folder: Path) -> list[str]:
+        return [sys.executable, "-c", self.text.split(" ", 1)[1]]
+
+
+@pytest.mark.parametrize(
+    ("script", "hang", "passed", "failed"),
+    [
+        ("pass", False, True, False),
+        ("print('[  PASSED  ] 0 tests.')", False, False, False),
+        ("raise SystemExit(1)", False, False, True),
+        ("raise SystemExit(5)", False, False, False),  # pytest: no test of this name
+        ("import os; os.abort()", False, False, True),
+        ("import time; time.sleep(60)", False, False, False),
+        ("import time; time.sleep(60)", True, False, True),
+        ("import os; assert os.environ['MAPPM_MUTANT'] == '7'", False, True, False),
+    ],
+)
+def test_how_a_detector_ends(tmp_path: Path, script: str, hang: bool, passed: bool, failed: bool) -> None:
+    timeout = 0.5 if "sleep" in script else 60.0
+    result = run_detector(Script(f"pytest {script}"), 7, tmp_path, timeout, hang)
+    assert (result.passed, result.failed) == (passed, failed), result.message

@@ -21,7 +21,7 @@ from verification.solver import ROOT
         (True, (), False, False),
     ],
 )
-def test_a_case_holds_with_all_its_parts(outcome: bool, defects: tuple[str, ...], equal: bool | None, holds: bool) -> None:
+def test_a_case_holds_with_all_parts(outcome: bool, defects: tuple[str, ...], equal: bool | None, holds: bool) -> None:
     outcomes = (SimpleNamespace(holds=True), SimpleNamespace(holds=outcome))
     matrix = None if equal is None else SimpleNamespace(equal=equal)
     result = CaseResult(SimpleNamespace(), "quick", {}, outcomes, (), Exactness(1, 1, defects), matrix)

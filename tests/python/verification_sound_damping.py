@@ -1,8 +1,8 @@
 """Damping of a standing sound wave. Oracle: its kinetic energy falls as exp(-nu k^2 t).
 
-The viscous force of the pair law is mu times the Laplacian of the velocity, for sound too: there is no further 4/3 and no
-bulk viscosity. The period alone sees neither a density nor a position that is one step late; such a fault feeds the wave
-by omega^2 dt = 0.036, nearly twice what viscosity takes.
+The viscous force of the pair law is mu times the Laplacian of the velocity, for sound too: there is no further 4/3 and
+no bulk viscosity. The period alone sees neither a density nor a position that is one step late; such a fault feeds the
+wave by omega^2 dt = 0.036, nearly twice what viscosity takes.
 """
 
 from pathlib import Path
