@@ -58,7 +58,7 @@ def assert_sleeping_faults_change_no_bit() -> None:
         variants = [Options(ranks=2, steps=60), Options(ranks=2, steps=60, build=BUILD),
                     Options(ranks=0, steps=60, build=BUILD)]
         with tempfile.TemporaryDirectory() as folder:
-            file = ROOT / "tests" / "python" / "scenes" / f"{scene}.toml"
+            file = ROOT / "cases" / scene / "case.toml"
             comparison = compare(file, Path(folder), variants)
         if not comparison.equal:
             raise BuildError("the build with sleeping faults differs:\n" + "\n".join(comparison.lines))

@@ -13,7 +13,7 @@ def main(out: str, scene: str, ranks: str, steps: str, domains: str | None = Non
     overrides = (f"output.sample={max(1, int(steps) // 10)}", "output.snapshot=0")
     variants = [Options(ranks=0, steps=int(steps), overrides=overrides),
                 Options(ranks=int(ranks), steps=int(steps), overrides=overrides, domains=domains)]
-    comparison = compare(ROOT / "tests/python/scenes" / f"{scene}.toml", Path(out), variants)
+    comparison = compare(ROOT / "cases" / scene / "case.toml", Path(out), variants)
     print("\n".join(comparison.lines))
     return 0 if comparison.equal else 1
 

@@ -3,7 +3,7 @@
     case NAME [KEY=VALUE ...]              the judge's verdicts on a case; with overrides, if only of a value by
                                            itself, the scene alone without its levels, which is cheap
     bits SCENE RANKS STEPS [DOMAINS]       digests of the parallel solver and the serial reference at ten samples;
-                                           SCENE is a file of tests/python/scenes
+                                           SCENE is a folder of cases/
     pytest FILE::TEST                      of tests/python
     gtest FILE FILTER                      of tests/unit/FILE.cpp
     mpi FILE FILTER RANKS                  of tests/mpi/FILE.cpp
