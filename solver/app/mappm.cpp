@@ -25,6 +25,7 @@ struct DomainOptions {
     std::string text = grid.empty() ? "" : " --domains " + grid;
     if (engine.threads != ParallelOptions{}.threads) text += " --threads " + std::to_string(engine.threads);
     if (engine.rebalance != ParallelOptions{}.rebalance) text += " --rebalance " + std::to_string(engine.rebalance);
+    if (faces) text += " --faces";
     return text;
   }
 };
