@@ -69,25 +69,6 @@ def sound_speed(run: Run) -> Measured:
     return Measured(float(speed), float(speed * np.sqrt(covariance[0, 0]) / spacing))
 
 
-def poiseuille(run: Run) -> Measured:
-    """Root-mean-square difference between the last velocity profile and the parabola g y (H - y) / (2 nu), in units of
-    its largest value."""
-    fluid, (wall,) = run.scene["fluid"], [body for body in run.scene["body"] if body["shape"] == "wall"]
-    normal = "xyz".index(wall["axis"])
-    force = np.array(run.scene["force"]["fluid"])
-    along = int(np.argmax(np.abs(force)))
-    side = run.scene["box"]["size"][normal]
-    width = side - wall["thickness"]
-    particles = run.fluid()
-    y = (particles["points"][:, normal] - wall["position"] - wall["thickness"]) % side
-    exact = force[along] * y * (width - y) / (2 * fluid["viscosity"] / fluid["density"])
-    largest = abs(force[along]) * width**2 / (8 * fluid["viscosity"] / fluid["density"])
-    difference = (particles["velocity"][:, along] - exact) / largest
-    moving = extrapolate(run.series["time"], run.series["fluid_velocity_" + "xyz"[along]])
-    objection = "" if moving.gap < SETTLED else f"the flow has not settled: {100 * moving.gap:.2f} % to go"
-    return Measured(float(np.sqrt(np.mean(difference**2))), moving.gap, objection)
-
-
 def _cell(run: Run) -> tuple[int, float, float, float]:
     """(axis of the flow, acceleration, volume of the cell, volume of the one solid)."""
     (body,) = run.scene["body"]
@@ -160,5 +141,5 @@ def contact_time(run: Run) -> Measured:
 
 OBSERVABLES: dict[str, Callable[[Run], Measured]] = {
     function.__name__: function
-    for function in (viscosity, sound_speed, poiseuille, drag, largest_velocity, contact_force, contact_time)
+    for function in (viscosity, sound_speed, drag, largest_velocity, contact_force, contact_time)
 }

@@ -126,6 +126,12 @@ def read_points(path: Path) -> dict[str, np.ndarray]:
         return {"points": group["Points"][:]} | {name: data[:] for name, data in group["PointData"].items()}
 
 
+def snapshot_time(path: Path) -> float:
+    """In the scene's units."""
+    with h5py.File(path) as file:
+        return float(file["VTKHDF/FieldData/TimeValue"][0])
+
+
 DEFAULT = Options()
 
 
