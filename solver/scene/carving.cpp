@@ -48,6 +48,13 @@ void for_each_node(const Lattice<D>& lattice, const std::array<Span, D>& spans, 
   rows(rows, D - 1);
 }
 
+/// Ascending, each once.
+std::vector<std::uint64_t> as_set(std::vector<std::uint64_t>&& ids) {
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return std::move(ids);
+}
+
 }  // namespace
 
 template <int D>
@@ -86,7 +93,7 @@ Carving<D>::Carving(const Scene& scene, const Model<D>& model, const Lattice<D>&
   const std::uint64_t all = lattice.whole().size();
   std::uint64_t wanted = all - kept_nodes(lattice, solid_volume(scene, model, solids));
   std::vector<Ranked> near;
-  visit(lattice.whole(), [&](double distance, std::uint64_t id) {
+  visit(lattice.whole(), band_, [&](double distance, std::uint64_t id) {
     if (distance >= -band_)
       near.emplace_back(distance, id);
     else
@@ -108,29 +115,34 @@ Carving<D>::Carving(const Scene& scene, const Model<D>& model, const Lattice<D>&
 template <int D>
 std::vector<std::uint64_t> Carving<D>::removed(const NodeRange<D>& range) const {
   std::vector<std::uint64_t> ids;
-  visit(range, [&](double distance, std::uint64_t id) {
+  visit(range, band_, [&](double distance, std::uint64_t id) {
     if (distance < -band_ || Ranked{distance, id} <= last_removed_) ids.push_back(id);
   });
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  return ids;
+  return as_set(std::move(ids));
+}
+
+template <int D>
+std::vector<std::uint64_t> Carving<D>::nearer_than(double distance, const NodeRange<D>& range) const {
+  std::vector<std::uint64_t> ids;
+  visit(range, distance, [&](double, std::uint64_t id) { ids.push_back(id); });
+  return as_set(std::move(ids));
 }
 
 template <int D>
 template <class F>
-void Carving<D>::visit(const NodeRange<D>& range, F&& f) const {
+void Carving<D>::visit(const NodeRange<D>& range, double band, F&& f) const {
   for (const BodyScene& body : scene_.bodies)
-    if (is_wall(body)) visit_wall(body, range, f);
+    if (is_wall(body)) visit_wall(body, range, band, f);
   for (const PlacedSolid<D>& solid : solids_)
-    if (!is_wall(scene_.bodies[solid.shape])) visit_balls(solid, range, f);
+    if (!is_wall(scene_.bodies[solid.shape])) visit_balls(solid, range, band, f);
 }
 
 template <int D>
 template <class F>
-void Carving<D>::visit_balls(const PlacedSolid<D>& solid, const NodeRange<D>& range, F&& f) const {
+void Carving<D>::visit_balls(const PlacedSolid<D>& solid, const NodeRange<D>& range, double band, F&& f) const {
   const Shape<D>& shape = model_.shapes[solid.shape];
   std::array<Span, D> spans;
-  for (int axis = 0; axis < D; ++axis) spans[axis] = span_around(lattice_, axis, solid.x[axis], shape.reach + band_);
+  for (int axis = 0; axis < D; ++axis) spans[axis] = span_around(lattice_, axis, solid.x[axis], shape.reach + band);
   std::vector<Vec<D, double>> centres;
   for (const Ball<D>& ball : shape.balls) {
     Vec<D, double> centre;
@@ -149,24 +161,24 @@ void Carving<D>::visit_balls(const PlacedSolid<D>& solid, const NodeRange<D>& ra
         r[axis] = nearest_difference(x[axis], centres[ball][axis]) * model_.pair.length[axis];
       distance = std::min(distance, std::sqrt(dot(r, r)) - shape.balls[ball].radius);
     }
-    if (distance < band_) f(distance, lattice_.id(node));
+    if (distance < band) f(distance, lattice_.id(node));
   });
 }
 
 template <int D>
 template <class F>
-void Carving<D>::visit_wall(const BodyScene& wall, const NodeRange<D>& range, F&& f) const {
+void Carving<D>::visit_wall(const BodyScene& wall, const NodeRange<D>& range, double band, F&& f) const {
   const double middle = wall_middle(scene_, wall);
   const double half = 0.5 * wall.thickness / scene_.fluid.cutoff;
   std::array<Span, D> spans;
   for (int axis = 0; axis < D; ++axis)
-    spans[axis] = axis == wall.axis ? span_around(lattice_, axis, middle, half + band_)
+    spans[axis] = axis == wall.axis ? span_around(lattice_, axis, middle, half + band)
                                     : Span{static_cast<std::int64_t>(range.first[axis]),
                                            static_cast<std::int64_t>(range.last[axis]) - 1};
   for_each_node<D>(lattice_, spans, range, [&](const std::array<std::uint64_t, D>& node) {
     const double r = nearest_difference(lattice_.position(wall.axis, node[wall.axis]), middle);
     const double distance = std::fabs(r * model_.pair.length[wall.axis]) - half;
-    if (distance < band_) f(distance, lattice_.id(node));
+    if (distance < band) f(distance, lattice_.id(node));
   });
 }
 

@@ -30,18 +30,21 @@ class Carving {
   /// Ids of the nodes of `range` that carry no PP, ascending.
   std::vector<std::uint64_t> removed(const NodeRange<D>& range) const;
 
+  /// Ids of the nodes of `range` that lie inside a solid or nearer than `distance` (rcut) to one, ascending.
+  std::vector<std::uint64_t> nearer_than(double distance, const NodeRange<D>& range) const;
+
  private:
   /// A node by its signed distance to the nearest surface (negative inside, rcut), then by its id.
   using Ranked = std::pair<double, std::uint64_t>;
 
-  /// Calls f(distance, id) for each node of the range nearer than `band_` to a solid or inside one. A node between
+  /// Calls f(distance, id) for each node of the range nearer than `band` to a solid or inside one. A node between
   /// two solids is met once for each.
   template <class F>
-  void visit(const NodeRange<D>& range, F&& f) const;
+  void visit(const NodeRange<D>& range, double band, F&& f) const;
   template <class F>
-  void visit_balls(const PlacedSolid<D>& solid, const NodeRange<D>& range, F&& f) const;
+  void visit_balls(const PlacedSolid<D>& solid, const NodeRange<D>& range, double band, F&& f) const;
   template <class F>
-  void visit_wall(const BodyScene& wall, const NodeRange<D>& range, F&& f) const;
+  void visit_wall(const BodyScene& wall, const NodeRange<D>& range, double band, F&& f) const;
 
   const Scene& scene_;
   const Model<D>& model_;

@@ -40,7 +40,7 @@ bool is_whole(double x) { return std::fabs(x - std::floor(x + 0.5)) < 1e-6; }
 }  // namespace
 
 double largest_declared_speed(const Scene& scene) {
-  double largest = norm(scene.fluid.velocity) + (scene.fluid.wave ? std::fabs(scene.fluid.wave->amplitude) : 0.0);
+  double largest = norm(scene.fluid.velocity) + (scene.fluid.flow ? largest_flow(*scene.fluid.flow) : 0.0);
   for (const BodyScene& body : scene.bodies)
     for (const Triple& velocity : body.velocities) largest = std::max(largest, norm(velocity));
   return largest;
