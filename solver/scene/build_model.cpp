@@ -53,7 +53,7 @@ Matter count_matter(const Scene& scene, const Model<D>& model, const Lattice<D>&
   Matter matter;
   if (scene.fluid.particles) matter.fluid_particles = kept_nodes(lattice, solid_volume(scene, model, solids));
   for (const PlacedSolid<D>& solid : solids) {
-    const BodyScene& body = scene.bodies[solid.shape];
+    const BodyScene& body = scene.bodies[solid.body];
     if (is_wall(body)) continue;
     ++matter.ball_solids;
     if (body.motion != Motion::free) continue;

@@ -111,7 +111,7 @@ SolidMotion solid_motion(Motion motion) {
 
 template <int D>
 Solid<D> make_solid(const Scene& scene, const Model<D>& model, const PlacedSolid<D>& placed, std::uint64_t id) {
-  const BodyScene& body = scene.bodies[placed.shape];
+  const BodyScene& body = scene.bodies[placed.body];
   const Shape<D>& shape = model.shapes[placed.shape];
   Solid<D> solid;
   solid.id = id;

@@ -8,12 +8,7 @@ namespace mappm {
 
 namespace {
 
-/// Indices of one axis within `reach` of a point, as an interval that may stick out of the box on either side; each
-/// node at most once.
-struct Span {
-  std::int64_t first, last;
-};
-
+/// Within `reach` of a point.
 template <int D>
 Span span_around(const Lattice<D>& lattice, int axis, double x, double reach) {
   const double centre = x / box_quanta * static_cast<double>(lattice.count[axis]);
@@ -63,12 +58,14 @@ double solid_volume(const Scene& scene, const Model<D>& model, const std::vector
   for (const BodyScene& wall : scene.bodies) {
     if (!is_wall(wall)) continue;
     double layer = wall.thickness / scene.fluid.cutoff;
-    for (int axis = 0; axis < D; ++axis)
-      if (axis != wall.axis) layer *= model.box[axis];
+    for (int axis = 0; axis < D; ++axis) {
+      const WallSide side = side_of(scene, wall, axis);
+      if (axis != wall.axis) layer *= side.whole ? model.box[axis] : side.length / scene.fluid.cutoff;
+    }
     volume += layer;
   }
   for (const PlacedSolid<D>& solid : solids)
-    if (!is_wall(scene.bodies[solid.shape])) volume += model.shapes[solid.shape].volume;
+    if (!is_wall(scene.bodies[solid.body])) volume += model.shapes[solid.shape].volume;
   return volume;
 }
 
@@ -134,7 +131,7 @@ void Carving<D>::visit(const NodeRange<D>& range, double band, F&& f) const {
   for (const BodyScene& body : scene_.bodies)
     if (is_wall(body)) visit_wall(body, range, band, f);
   for (const PlacedSolid<D>& solid : solids_)
-    if (!is_wall(scene_.bodies[solid.shape])) visit_balls(solid, range, band, f);
+    if (!is_wall(scene_.bodies[solid.body])) visit_balls(solid, range, band, f);
 }
 
 template <int D>
@@ -165,6 +162,17 @@ void Carving<D>::visit_balls(const PlacedSolid<D>& solid, const NodeRange<D>& ra
   });
 }
 
+/// A limited wall holds whole rows of nodes; those beyond its ends lie in the walls that close it.
+template <int D>
+Span Carving<D>::span_along(const BodyScene& wall, int axis, const NodeRange<D>& range) const {
+  const WallSide side = side_of(scene_, wall, axis);
+  if (side.whole)
+    return {static_cast<std::int64_t>(range.first[axis]), static_cast<std::int64_t>(range.last[axis]) - 1};
+  const double cell = lattice_.spacing[axis] * scene_.fluid.cutoff;
+  return {static_cast<std::int64_t>(side.first / cell + 0.5),
+          static_cast<std::int64_t>((side.first + side.length) / cell + 0.5) - 1};
+}
+
 template <int D>
 template <class F>
 void Carving<D>::visit_wall(const BodyScene& wall, const NodeRange<D>& range, double band, F&& f) const {
@@ -172,9 +180,7 @@ void Carving<D>::visit_wall(const BodyScene& wall, const NodeRange<D>& range, do
   const double half = 0.5 * wall.thickness / scene_.fluid.cutoff;
   std::array<Span, D> spans;
   for (int axis = 0; axis < D; ++axis)
-    spans[axis] = axis == wall.axis ? span_around(lattice_, axis, middle, half + band)
-                                    : Span{static_cast<std::int64_t>(range.first[axis]),
-                                           static_cast<std::int64_t>(range.last[axis]) - 1};
+    spans[axis] = axis == wall.axis ? span_around(lattice_, axis, middle, half + band) : span_along(wall, axis, range);
   for_each_node<D>(lattice_, spans, range, [&](const std::array<std::uint64_t, D>& node) {
     const double r = nearest_difference(lattice_.position(wall.axis, node[wall.axis]), middle);
     const double distance = std::fabs(r * model_.pair.length[wall.axis]) - half;

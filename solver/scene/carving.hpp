@@ -19,6 +19,12 @@ double solid_volume(const Scene& scene, const Model<D>& model, const std::vector
 template <int D>
 std::uint64_t kept_nodes(const Lattice<D>& lattice, double volume_of_solids);
 
+/// Indices of nodes along one axis, as an interval that may stick out of the box on either side; each node at most
+/// once.
+struct Span {
+  std::int64_t first, last;
+};
+
 /// Decides over all nodes of the box at once, so that every process finds the same; stores only those near a surface.
 template <int D>
 class Carving {
@@ -45,6 +51,7 @@ class Carving {
   void visit_balls(const PlacedSolid<D>& solid, const NodeRange<D>& range, double band, F&& f) const;
   template <class F>
   void visit_wall(const BodyScene& wall, const NodeRange<D>& range, double band, F&& f) const;
+  Span span_along(const BodyScene& wall, int axis, const NodeRange<D>& range) const;
 
   const Scene& scene_;
   const Model<D>& model_;

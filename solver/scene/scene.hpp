@@ -70,10 +70,16 @@ struct BodyScene {
   std::vector<Triple> velocities;  // one per position
   std::vector<Triple> angular_velocities;  // one per position; in the plane only the last entry is used
   bool rotates = true;                     // false: the orientation is held
-  // wall: an infinite plane layer normal to `axis`, from `position` to `position + thickness`
+  // wall: a plane layer normal to `axis`, from `position` to `position + thickness`; along itself it fills the box, or
+  // along one axis its extent
   int axis = 1;
   double position = 0.0;
   double thickness = 0.0;
+  struct Extent {
+    int axis = 0;
+    double from = 0.0, to = 0.0;
+  };
+  std::optional<Extent> extent;
 };
 
 struct ContactScene {
