@@ -39,6 +39,7 @@ std::vector<std::string> term_names(const Terms& terms) {
   add(terms.transport, "transport velocity");
   add(terms.extrapolated, "extrapolated no-slip");
   add(terms.body_force, "body force");
+  add(terms.force_field, "field of force");
   add(terms.solids, "solids");
   add(terms.motion, "motion of solids");
   add(terms.rotation, "rotation of solids");

@@ -26,8 +26,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// Cells to a cutoff, by measurement (bench/fluid_pass.cpp, 39 and 77 neighbours): in the plane two and three are equal,
-/// in space rows of narrower cells leave more lanes empty and cost a third.
+/// Cells to a cutoff, by measurement (bench/fluid_pass.cpp, 39 and 77 neighbours): in the plane two and three are
+/// equal, in space rows of narrower cells leave more lanes empty and cost a third.
 template <int D>
 constexpr int cells_per_cutoff = D == 2 ? 3 : 2;
 
@@ -241,25 +241,34 @@ void ParallelEngine<D>::move_fluid() {
     else
       for (row[1] = first_inner; row[1] < first_inner + grid_.inner(1); ++row[1]) add_row();
   }
+  std::vector<Vec<D, Int128>> given(model_.terms.force_field ? rows.size() : 0);  // by the field of force, to each row
+  with_force_field(model_, state_.step, [&]<bool field>(std::bool_constant<field>) {
 #pragma omp parallel for num_threads(options_.threads) schedule(static) if (options_.threads > 1)
-  for (std::size_t n = 0; n < rows.size(); ++n)
-    for (std::size_t i = rows[n].first; i < rows[n].second; ++i) {
-      Vec<D, double> x, v;
-      for (int axis = 0; axis < D; ++axis) {
-        x[axis] = fluid.x(axis)[i];
-        v[axis] = fluid.v(axis)[i];
-      }
-      const NeighbourSums<D> sums = pass_.sums(i);
-      const RangeFault fault = advance(x, v, fluid.density()[i], sums, constants);
-      if (fault != RangeFault::none) {
+    for (std::size_t n = 0; n < rows.size(); ++n)
+      for (std::size_t i = rows[n].first; i < rows[n].second; ++i) {
+        Vec<D, double> x, v;
+        for (int axis = 0; axis < D; ++axis) {
+          x[axis] = fluid.x(axis)[i];
+          v[axis] = fluid.v(axis)[i];
+        }
+        NeighbourSums<D> sums = pass_.sums(i);
+        if constexpr (field) {
+          const Vec<D, std::int64_t> impulse = field_impulse(model_.fluid_field, x);
+          sums.impulse += impulse;
+          for (int axis = 0; axis < D; ++axis) given[n][axis] += impulse[axis];
+        }
+        const RangeFault fault = advance(x, v, fluid.density()[i], sums, constants);
+        if (fault != RangeFault::none) {
 #pragma omp critical
-        if (range_error_.empty()) range_error_ = range_message(fault, state_.step, fluid.id[i], v, sums);
+          if (range_error_.empty()) range_error_ = range_message(fault, state_.step, fluid.id[i], v, sums);
+        }
+        for (int axis = 0; axis < D; ++axis) {
+          fluid.x(axis)[i] = wrap_position(x[axis]);
+          fluid.v(axis)[i] = v[axis];
+        }
       }
-      for (int axis = 0; axis < D; ++axis) {
-        fluid.x(axis)[i] = wrap_position(x[axis]);
-        fluid.v(axis)[i] = v[axis];
-      }
-    }
+  });
+  for (const Vec<D, Int128>& impulse : given) state_.outside_impulse += impulse;
   std::size_t kept = 0;
   for (const auto& [first, last] : rows) {
     std::copy(fluid.id.begin() + first, fluid.id.begin() + last, fluid.id.begin() + static_cast<std::ptrdiff_t>(kept));

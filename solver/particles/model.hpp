@@ -8,6 +8,7 @@
 
 #include "base/vec.hpp"
 #include "physics/contact.hpp"
+#include "physics/flow_field.hpp"
 #include "physics/fluid_pair.hpp"
 #include "physics/kernel.hpp"
 #include "physics/rigid_body.hpp"
@@ -19,11 +20,12 @@ struct Terms {
   bool fluid = true;          // PPs exist
   bool transport = false;     // transport velocity
   bool extrapolated = false;  // no-slip by extrapolation; needs solids
-  bool body_force = false;
-  bool solids = false;    // FPs exist
-  bool motion = false;    // some solid is not fixed
-  bool rotation = false;  // some free solid rotates
-  bool contact = false;   // contact law given, and at least two solids, or one and a wall
+  bool body_force = false;    // uniform
+  bool force_field = false;   // on the PPs, varying in space
+  bool solids = false;        // FPs exist
+  bool motion = false;        // some solid is not fixed
+  bool rotation = false;      // some free solid rotates
+  bool contact = false;       // contact law given, and at least two solids, or one and a wall
 };
 
 /// A face of a wall, for contact of solids with it. Its FPs are solids of their own.
@@ -58,6 +60,7 @@ struct Model {
   double dt = 0.0;                      // rcut / c
   std::uint64_t relax = 0;              // body forces act from this step on
   Vec<D, double> fluid_kick{};          // body-force impulse on one PP in a step: an integer multiple of iota
+  FlowField fluid_field;                // velocity (c) that it gives a PP in a step
   Vec<D, double> solid_acceleration{};  // of free SPs, c^2 / rcut
   ContactLaw contact;
   std::vector<Shape<D>> shapes;
@@ -74,6 +77,15 @@ template <int D>
 double solid_margin(const Model<D>& model) {
   if (!model.terms.solids) return 0.0;
   return std::max(model.largest_reach + 1.0, 2.0 * model.largest_contact_reach) + largest_displacement;
+}
+
+/// Calls f(bool_constant<field>{}): whether the field of force acts on the PPs in this step.
+template <int D, class F>
+void with_force_field(const Model<D>& model, std::uint64_t step, F&& f) {
+  if (model.terms.force_field && step >= model.relax)
+    f(std::true_type{});
+  else
+    f(std::false_type{});
 }
 
 /// Calls f(Kernel{}, bool_constant<transport>{}) for the model's choice: the choice is made outside the loops.

@@ -21,12 +21,19 @@ struct FrozenLayer {
 template <int D, class Kernel>
 Shape<D> make_body(std::vector<Ball<D>> balls, double density, const FrozenLayer& layer);
 
+/// Whether a wall ends with a piece, at its lower and at its upper side along `axis`.
+struct WallEnds {
+  int axis = 0;
+  bool below = false, above = false;
+};
+
 /// A piece of a plane wall, normal to `axis`: `sides` are its lengths (in the normal direction the wall's thickness).
 /// FPs stand on a lattice of spacing `spacing[a]`, fitted to divide the side, half a spacing below both faces, down to
 /// the layer's thickness.
-/// The wall goes on beyond the piece: own_density and normals are those of the whole layer.
+/// The wall goes on beyond the piece, but for its ends: own_density and normals are those of the whole layer, and near
+/// an end own_density is that of a layer which ends there.
 template <int D, class Kernel>
 Shape<D> make_wall_piece(int axis, const std::array<double, D>& sides, const std::array<double, D>& spacing,
-                         const FrozenLayer& layer);
+                         const FrozenLayer& layer, const WallEnds& ends = {});
 
 }  // namespace mappm

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -51,7 +53,7 @@ Matter count_matter(const Scene& scene, const Model<D>& model, const Lattice<D>&
   Matter matter;
   if (scene.fluid.particles) matter.fluid_particles = kept_nodes(lattice, solid_volume(scene, model, solids));
   for (const PlacedSolid<D>& solid : solids) {
-    const BodyScene& body = scene.bodies[solid.shape];
+    const BodyScene& body = scene.bodies[solid.body];
     if (is_wall(body)) continue;
     ++matter.ball_solids;
     if (body.motion != Motion::free) continue;
@@ -75,6 +77,7 @@ Terms find_terms(const Scene& scene, const Matter& matter) {
   terms.transport = terms.fluid && scene.fluid.transport;
   terms.extrapolated = terms.fluid && terms.solids && scene.fluid.no_slip == NoSlip::extrapolated;
   terms.body_force = norm(scene.force.fluid) > 0.0 || norm(scene.force.solid) > 0.0;
+  terms.force_field = terms.fluid && scene.force.field.has_value();
   bool walls = false;
   for (const BodyScene& body : scene.bodies) {
     terms.motion = terms.motion || body.motion != Motion::fixed;
@@ -84,6 +87,11 @@ Terms find_terms(const Scene& scene, const Matter& matter) {
   terms.contact =
       scene.contact.model != ContactModel::none && matter.free_solids > 0 && (matter.ball_solids > 1 || walls);
   return terms;
+}
+
+/// The largest acceleration of a PP, m/s^2.
+double largest_acceleration(const ForceScene& force) {
+  return norm(force.fluid) + (force.field ? largest_flow(*force.field) : 0.0);
 }
 
 /// Acceleration of the free solids in scene units; under "balance" the one that cancels the force on the fluid.
@@ -111,7 +119,7 @@ double sound_speed(const Scene& scene, const Matter& matter, const Triple& on_so
       length = std::max(length, 2.0 * ball.radius);
     }
   if (length == 0.0) length = *std::max_element(scene.box.begin(), scene.box.end());
-  double g = norm(scene.force.fluid);
+  double g = largest_acceleration(scene.force);
   if (matter.fluid_particles > 0)
     g = std::max(g, norm(on_solids) * matter.free_mass / static_cast<double>(matter.fluid_particles));
   const double nu = scene.fluid.viscosity / scene.fluid.density;
@@ -143,7 +151,7 @@ StepLimits find_limits(const Scene& scene, const Model<D>& model, const Matter& 
                                 declared > 0.0 ? declared : 0.1) *
                model.units.time();
   }
-  const double g = std::max(norm(scene.force.fluid), norm(on_solids));
+  const double g = std::max(largest_acceleration(scene.force), norm(on_solids));
   StepLimits limits = step_limits(0.5 * scene.fluid.cutoff, model.units.velocity,
                                   scene.fluid.viscosity / scene.fluid.density, g, duration);
   if (!model.terms.fluid) limits.acoustic = HUGE_VAL;
@@ -184,6 +192,14 @@ void fold_forces(const Scene& scene, const Matter& matter, Model<D>& model) {
             ? -model.fluid_kick[axis] / model.dt * static_cast<double>(matter.fluid_particles) / matter.free_mass
             : scene.force.solid[a] / unit;
   }
+  if (!model.terms.force_field) return;
+  model.fluid_field = *scene.force.field;
+  model.fluid_field.amplitude *= model.dt / unit;
+  if (const double gained = largest_flow(model.fluid_field); gained > 1.0)
+    throw InputError(scene.file, "force", "",
+                     fmt::format("its field gives the fluid {:.3g} times the sound speed in one step; lower the "
+                                 "amplitude or run.step",
+                                 gained));
 }
 
 }  // namespace

@@ -1,82 +1,77 @@
 #define EIGEN_DONT_VECTORIZE  // the same bits on every machine
 #include <Eigen/Dense>
 
-#include <cmath>
+#include <optional>
+#include <utility>
 
 #include "scene/build.hpp"
 #include "scene/carving.hpp"
+#include "scene/disorder.hpp"
 #include "scene/lattice.hpp"
 #include "scene/solids.hpp"
+#include "scene/velocity_field.hpp"
 
 namespace mappm {
 
 namespace {
 
+/// Nodes whose PPs may start inside the region.
 template <int D>
-NodeRange<D> nodes_inside(const Lattice<D>& lattice, const Region<D>& region) {
+NodeRange<D> nodes_of(const Lattice<D>& lattice, const Region<D>& region, const Disorder<D>& disorder) {
   NodeRange<D> range;
   for (int axis = 0; axis < D; ++axis) {
-    range.first[axis] = lattice.first_at_or_above(axis, region.low[axis]);
-    range.last[axis] = lattice.first_at_or_above(axis, region.high[axis]);
+    range.first[axis] = lattice.first_at_or_above(axis, region.low[axis] - disorder.reach(axis));
+    range.last[axis] = lattice.first_at_or_above(axis, region.high[axis] + disorder.reach(axis));
   }
   return range;
 }
 
-/// Initial velocity of the fluid, c: uniform but for one component that may vary along one axis.
-template <int D>
-class InitialVelocity {
+/// Ids of nodes of a range, asked for in ascending order.
+class NodeSet {
  public:
-  InitialVelocity(const Scene& scene, const Model<D>& model, const Lattice<D>& lattice, const NodeRange<D>& range) {
-    const double unit = model.units.velocity;
-    for (int axis = 0; axis < D; ++axis)
-      uniform_[axis] = round_to_quantum(scene.fluid.velocity[static_cast<std::size_t>(axis)] / unit, velocity_quantum);
-    if (!scene.fluid.wave) return;
-    const FluidScene::Wave& wave = *scene.fluid.wave;
-    direction_ = wave.direction;
-    gradient_ = wave.gradient;
-    first_ = range.first[gradient_];
-    for (std::uint64_t i = first_; i < range.last[gradient_]; ++i) {
-      const double turns = wave.mode * (lattice.position(gradient_, i) / box_quanta);
-      const double speed =
-          scene.fluid.velocity[static_cast<std::size_t>(direction_)] + wave.amplitude * unit_circle(turns)[1];
-      varying_.push_back(round_to_quantum(speed / unit, velocity_quantum));
-    }
-  }
-
-  double at(int axis, const std::array<std::uint64_t, D>& node) const {
-    return axis == direction_ ? varying_[node[gradient_] - first_] : uniform_[axis];
+  explicit NodeSet(std::vector<std::uint64_t>&& ids) : ids_(std::move(ids)), next_(ids_.begin()) {}
+  NodeSet(const NodeSet&) = delete;
+  NodeSet& operator=(const NodeSet&) = delete;
+  std::size_t size() const { return ids_.size(); }
+  bool has(std::uint64_t id) {
+    if (next_ == ids_.end() || *next_ != id) return false;
+    ++next_;
+    return true;
   }
 
  private:
-  Vec<D, double> uniform_;
-  int direction_ = -1;  // no wave
-  int gradient_ = 0;
-  std::uint64_t first_ = 0;
-  std::vector<double> varying_;
+  std::vector<std::uint64_t> ids_;
+  std::vector<std::uint64_t>::const_iterator next_;
 };
 
 template <int D>
 void fill_fluid(const Scene& scene, const Model<D>& model, const Lattice<D>& lattice,
                 const std::vector<PlacedSolid<D>>& solids, const Region<D>& region, FluidParticles<D>& fluid) {
-  const NodeRange<D> range = nodes_inside(lattice, region);
+  const Disorder<D> disorder(scene.fluid, lattice);
+  const NodeRange<D> range = nodes_of(lattice, region, disorder);
   if (range.size() == 0) return;
-  const std::vector<std::uint64_t> removed =
-      solids.empty() ? std::vector<std::uint64_t>{} : Carving<D>(scene, model, lattice, solids).removed(range);
-  const InitialVelocity<D> velocity(scene, model, lattice, range);
+  std::optional<Carving<D>> carving;
+  if (!solids.empty()) carving.emplace(scene, model, lattice, solids);
+  NodeSet removed(carving ? carving->removed(range) : std::vector<std::uint64_t>{});
+  NodeSet held(carving && scene.fluid.disorder ? carving->nearer_than(model.spacing, range)
+                                               : std::vector<std::uint64_t>{});
+  const InitialVelocity<D> velocity(scene.fluid, model.units);
   const double density = round_to_quantum(model.rest_density, density_quantum);
   fluid.resize(range.size() - removed.size());
-  auto next_removed = removed.begin();
   std::size_t particle = 0;
   std::array<std::uint64_t, D> node = range.first;
   while (node[D - 1] < range.last[D - 1]) {
     const std::uint64_t id = lattice.id(node);
-    if (next_removed != removed.end() && *next_removed == id) {
-      ++next_removed;
-    } else {
+    const bool displaced = !held.has(id);
+    Vec<D, double> x;
+    for (int axis = 0; axis < D; ++axis)
+      x[axis] = lattice.position(axis, node[axis]) + (displaced ? disorder.displacement(id, axis) : 0.0);
+    if (!removed.has(id) && region.contains(x)) {
+      const Vec<D, double> v = velocity.at(x);
       fluid.id[particle] = id;
       for (int axis = 0; axis < D; ++axis) {
-        fluid.x(axis)[particle] = lattice.position(axis, node[axis]);
-        fluid.v(axis)[particle] = velocity.at(axis, node);
+        fluid.x(axis)[particle] = x[axis];
+        fluid.v(axis)[particle] = v[axis];
       }
       fluid.density()[particle++] = density;
     }
@@ -86,6 +81,7 @@ void fill_fluid(const Scene& scene, const Model<D>& model, const Lattice<D>& lat
       ++node[axis + 1];
     }
   }
+  fluid.resize(particle);
 }
 
 /// I omega of a body in its initial orientation, c rcut per PP mass.
@@ -115,7 +111,7 @@ SolidMotion solid_motion(Motion motion) {
 
 template <int D>
 Solid<D> make_solid(const Scene& scene, const Model<D>& model, const PlacedSolid<D>& placed, std::uint64_t id) {
-  const BodyScene& body = scene.bodies[placed.shape];
+  const BodyScene& body = scene.bodies[placed.body];
   const Shape<D>& shape = model.shapes[placed.shape];
   Solid<D> solid;
   solid.id = id;

@@ -8,12 +8,7 @@ namespace mappm {
 
 namespace {
 
-/// Indices of one axis within `reach` of a point, as an interval that may stick out of the box on either side; each
-/// node at most once.
-struct Span {
-  std::int64_t first, last;
-};
-
+/// Within `reach` of a point.
 template <int D>
 Span span_around(const Lattice<D>& lattice, int axis, double x, double reach) {
   const double centre = x / box_quanta * static_cast<double>(lattice.count[axis]);
@@ -48,6 +43,13 @@ void for_each_node(const Lattice<D>& lattice, const std::array<Span, D>& spans, 
   rows(rows, D - 1);
 }
 
+/// Ascending, each once.
+std::vector<std::uint64_t> as_set(std::vector<std::uint64_t>&& ids) {
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return std::move(ids);
+}
+
 }  // namespace
 
 template <int D>
@@ -56,12 +58,14 @@ double solid_volume(const Scene& scene, const Model<D>& model, const std::vector
   for (const BodyScene& wall : scene.bodies) {
     if (!is_wall(wall)) continue;
     double layer = wall.thickness / scene.fluid.cutoff;
-    for (int axis = 0; axis < D; ++axis)
-      if (axis != wall.axis) layer *= model.box[axis];
+    for (int axis = 0; axis < D; ++axis) {
+      const WallSide side = side_of(scene, wall, axis);
+      if (axis != wall.axis) layer *= side.whole ? model.box[axis] : side.length / scene.fluid.cutoff;
+    }
     volume += layer;
   }
   for (const PlacedSolid<D>& solid : solids)
-    if (!is_wall(scene.bodies[solid.shape])) volume += model.shapes[solid.shape].volume;
+    if (!is_wall(scene.bodies[solid.body])) volume += model.shapes[solid.shape].volume;
   return volume;
 }
 
@@ -86,7 +90,7 @@ Carving<D>::Carving(const Scene& scene, const Model<D>& model, const Lattice<D>&
   const std::uint64_t all = lattice.whole().size();
   std::uint64_t wanted = all - kept_nodes(lattice, solid_volume(scene, model, solids));
   std::vector<Ranked> near;
-  visit(lattice.whole(), [&](double distance, std::uint64_t id) {
+  visit(lattice.whole(), band_, [&](double distance, std::uint64_t id) {
     if (distance >= -band_)
       near.emplace_back(distance, id);
     else
@@ -108,29 +112,34 @@ Carving<D>::Carving(const Scene& scene, const Model<D>& model, const Lattice<D>&
 template <int D>
 std::vector<std::uint64_t> Carving<D>::removed(const NodeRange<D>& range) const {
   std::vector<std::uint64_t> ids;
-  visit(range, [&](double distance, std::uint64_t id) {
+  visit(range, band_, [&](double distance, std::uint64_t id) {
     if (distance < -band_ || Ranked{distance, id} <= last_removed_) ids.push_back(id);
   });
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  return ids;
+  return as_set(std::move(ids));
+}
+
+template <int D>
+std::vector<std::uint64_t> Carving<D>::nearer_than(double distance, const NodeRange<D>& range) const {
+  std::vector<std::uint64_t> ids;
+  visit(range, distance, [&](double, std::uint64_t id) { ids.push_back(id); });
+  return as_set(std::move(ids));
 }
 
 template <int D>
 template <class F>
-void Carving<D>::visit(const NodeRange<D>& range, F&& f) const {
+void Carving<D>::visit(const NodeRange<D>& range, double band, F&& f) const {
   for (const BodyScene& body : scene_.bodies)
-    if (is_wall(body)) visit_wall(body, range, f);
+    if (is_wall(body)) visit_wall(body, range, band, f);
   for (const PlacedSolid<D>& solid : solids_)
-    if (!is_wall(scene_.bodies[solid.shape])) visit_balls(solid, range, f);
+    if (!is_wall(scene_.bodies[solid.body])) visit_balls(solid, range, band, f);
 }
 
 template <int D>
 template <class F>
-void Carving<D>::visit_balls(const PlacedSolid<D>& solid, const NodeRange<D>& range, F&& f) const {
+void Carving<D>::visit_balls(const PlacedSolid<D>& solid, const NodeRange<D>& range, double band, F&& f) const {
   const Shape<D>& shape = model_.shapes[solid.shape];
   std::array<Span, D> spans;
-  for (int axis = 0; axis < D; ++axis) spans[axis] = span_around(lattice_, axis, solid.x[axis], shape.reach + band_);
+  for (int axis = 0; axis < D; ++axis) spans[axis] = span_around(lattice_, axis, solid.x[axis], shape.reach + band);
   std::vector<Vec<D, double>> centres;
   for (const Ball<D>& ball : shape.balls) {
     Vec<D, double> centre;
@@ -149,24 +158,33 @@ void Carving<D>::visit_balls(const PlacedSolid<D>& solid, const NodeRange<D>& ra
         r[axis] = nearest_difference(x[axis], centres[ball][axis]) * model_.pair.length[axis];
       distance = std::min(distance, std::sqrt(dot(r, r)) - shape.balls[ball].radius);
     }
-    if (distance < band_) f(distance, lattice_.id(node));
+    if (distance < band) f(distance, lattice_.id(node));
   });
+}
+
+/// A limited wall holds whole rows of nodes; those beyond its ends lie in the walls that close it.
+template <int D>
+Span Carving<D>::span_along(const BodyScene& wall, int axis, const NodeRange<D>& range) const {
+  const WallSide side = side_of(scene_, wall, axis);
+  if (side.whole)
+    return {static_cast<std::int64_t>(range.first[axis]), static_cast<std::int64_t>(range.last[axis]) - 1};
+  const double cell = lattice_.spacing[axis] * scene_.fluid.cutoff;
+  return {static_cast<std::int64_t>(side.first / cell + 0.5),
+          static_cast<std::int64_t>((side.first + side.length) / cell + 0.5) - 1};
 }
 
 template <int D>
 template <class F>
-void Carving<D>::visit_wall(const BodyScene& wall, const NodeRange<D>& range, F&& f) const {
+void Carving<D>::visit_wall(const BodyScene& wall, const NodeRange<D>& range, double band, F&& f) const {
   const double middle = wall_middle(scene_, wall);
   const double half = 0.5 * wall.thickness / scene_.fluid.cutoff;
   std::array<Span, D> spans;
   for (int axis = 0; axis < D; ++axis)
-    spans[axis] = axis == wall.axis ? span_around(lattice_, axis, middle, half + band_)
-                                    : Span{static_cast<std::int64_t>(range.first[axis]),
-                                           static_cast<std::int64_t>(range.last[axis]) - 1};
+    spans[axis] = axis == wall.axis ? span_around(lattice_, axis, middle, half + band) : span_along(wall, axis, range);
   for_each_node<D>(lattice_, spans, range, [&](const std::array<std::uint64_t, D>& node) {
     const double r = nearest_difference(lattice_.position(wall.axis, node[wall.axis]), middle);
     const double distance = std::fabs(r * model_.pair.length[wall.axis]) - half;
-    if (distance < band_) f(distance, lattice_.id(node));
+    if (distance < band) f(distance, lattice_.id(node));
   });
 }
 

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 
 #include "base/fixed_point.hpp"
 #include "base/vec.hpp"
-#include "scene/scene.hpp"
+#include "scene/walls.hpp"
 
 namespace mappm {
 
@@ -73,10 +72,9 @@ template <int D>
 Lattice<D> make_lattice(const Scene& scene) {
   Lattice<D> lattice;
   for (int axis = 0; axis < D; ++axis) {
-    const double side = scene.box[static_cast<std::size_t>(axis)];
-    const double nodes = std::floor(side / scene.fluid.spacing + 0.5);
-    lattice.count[axis] = nodes < 1.0 ? 1 : static_cast<std::uint64_t>(nodes);
-    lattice.spacing[axis] = side / static_cast<double>(lattice.count[axis]) / scene.fluid.cutoff;
+    lattice.count[axis] = lattice_nodes(scene, axis);
+    lattice.spacing[axis] =
+        scene.box[static_cast<std::size_t>(axis)] / static_cast<double>(lattice.count[axis]) / scene.fluid.cutoff;
   }
   return lattice;
 }

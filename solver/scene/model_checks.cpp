@@ -35,12 +35,10 @@ std::string step_key(const Scene& scene) { return scene.run.step > 0.0 ? "run.st
 
 double declared_step(const Scene& scene) { return scene.run.step > 0.0 ? scene.run.step : scene.run.step_factor; }
 
-bool is_whole(double x) { return std::fabs(x - std::floor(x + 0.5)) < 1e-6; }
-
 }  // namespace
 
 double largest_declared_speed(const Scene& scene) {
-  double largest = norm(scene.fluid.velocity) + (scene.fluid.wave ? std::fabs(scene.fluid.wave->amplitude) : 0.0);
+  double largest = norm(scene.fluid.velocity) + (scene.fluid.flow ? largest_flow(*scene.fluid.flow) : 0.0);
   for (const BodyScene& body : scene.bodies)
     for (const Triple& velocity : body.velocities) largest = std::max(largest, norm(velocity));
   return largest;
@@ -69,7 +67,12 @@ void check_images(const Scene& scene, const Model<D>& model) {
 
 template <int D>
 void check_margin(const Scene& scene, const Model<D>& model) {
-  if (model.terms.contact) check_images(scene, model);
+  if (model.terms.contact) {
+    check_images(scene, model);
+    if (const BodyScene* wall = limited_wall(scene))
+      throw InputError(scene.file, wall->key + ".extent", "",
+                       "contact of solids knows no limited walls; remove extent or [contact]");
+  }
   const double needed = solid_margin(model) * scene.fluid.cutoff;
   for (int axis = 0; axis < D; ++axis)
     if (const double side = scene.box[static_cast<std::size_t>(axis)]; side < needed)
@@ -184,7 +187,7 @@ std::vector<std::string> scene_warnings(const Scene& scene, const Model<D>& mode
         lines.push_back(fmt::format("{}.radius: {:.3g} spacings; below {} the drag is wrong by 6 % and more", body.key,
                                     ball.radius / scene.fluid.spacing, least_radius));
     const double cell = lattice.spacing[body.axis] * scene.fluid.cutoff;
-    if (is_wall(body) && !(is_whole(body.position / cell) && is_whole(body.thickness / cell)))
+    if (is_wall(body) && !fits_lattice(scene, body))
       lines.push_back(
           fmt::format("{}: position and thickness are not whole multiples of the lattice spacing {:.6g}: "
                       "the fluid starts with an uneven row",

@@ -6,34 +6,13 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "scene/walls.hpp"
 
 namespace mappm {
 
 namespace {
 
 double nearest_image(double difference, double side) { return difference - side * std::floor(difference / side + 0.5); }
-
-/// Distance of a point to a wall's middle plane, less half its thickness: negative inside.
-double distance_to_wall(const Scene& scene, const BodyScene& wall, double x) {
-  const double middle = wall.position + 0.5 * wall.thickness;
-  return std::fabs(nearest_image(x - middle, scene.box[static_cast<std::size_t>(wall.axis)])) - 0.5 * wall.thickness;
-}
-
-void check_walls(const Scene& scene) {
-  std::vector<const BodyScene*> walls;
-  for (const BodyScene& body : scene.bodies)
-    if (body.shape == BodyScene::Shape::wall) walls.push_back(&body);
-  for (std::size_t i = 0; i < walls.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) {
-      const BodyScene& wall = *walls[i];
-      if (wall.axis != walls[j]->axis)
-        throw InputError(scene.file, wall.key + ".axis", "",
-                         fmt::format("crosses the wall {}; walls must be parallel", walls[j]->key));
-      if (distance_to_wall(scene, *walls[j], wall.position + 0.5 * wall.thickness) < 0.5 * wall.thickness)
-        throw InputError(scene.file, wall.key + ".position", fmt::format("{}", wall.position),
-                         fmt::format("overlaps the wall {}; move one of them", walls[j]->key));
-    }
-}
 
 std::string point_text(const Scene& scene, const Triple& x) {
   std::string text;
@@ -113,10 +92,7 @@ const PlacedBall* Obstacles::ball_near(const PlacedBall& ball, double gap) const
 
 const BodyScene* Obstacles::wall_near(const PlacedBall& ball, double gap) const {
   for (const BodyScene& body : scene_->bodies)
-    if (body.shape == BodyScene::Shape::wall &&
-        distance_to_wall(*scene_, body, ball.centre[static_cast<std::size_t>(body.axis)]) <
-            ball.radius + gap - tolerance_)
-      return &body;
+    if (is_wall(body) && distance_to_wall(*scene_, body, ball.centre) < ball.radius + gap - tolerance_) return &body;
   return nullptr;
 }
 

@@ -45,7 +45,7 @@ class Obstacles {
   std::unordered_map<std::uint64_t, std::vector<PlacedBall>> cells_;
 };
 
-/// Throws InputError if solids of the scene overlap, or walls meet.
+/// Throws InputError if solids of the scene overlap, or what `check_walls` does.
 void check_overlaps(const Scene& scene);
 
 }  // namespace mappm

@@ -10,6 +10,7 @@
 #include "scene/bodies.hpp"
 #include "scene/document.hpp"
 #include "scene/fields.hpp"
+#include "scene/velocity_field.hpp"
 
 namespace mappm {
 
@@ -37,18 +38,16 @@ SoundSpeed read_sound_speed(const Fields& table) {
   return speed;
 }
 
-std::optional<FluidScene::Wave> read_wave(const Fields& fluid) {
-  const std::optional<Fields> table = fluid.table("wave");
+std::optional<FluidScene::Disorder> read_disorder(const Fields& fluid) {
+  const std::optional<Fields> table = fluid.table("disorder");
   if (!table) return {};
-  FluidScene::Wave wave;
-  wave.amplitude = table->number("amplitude", Quantity::velocity, Sign::any);
-  wave.direction = table->axis("direction");
-  wave.gradient = table->axis("gradient");
-  const std::uint64_t mode = table->count("mode", 1);
-  if (mode == 0 || mode > 1'000'000) table->fail("mode", "must be 1 to 1000000: waves per box side");
-  wave.mode = static_cast<int>(mode);
+  FluidScene::Disorder disorder;
+  disorder.amplitude = table->number("amplitude", Quantity::plain, Sign::not_negative);
+  if (disorder.amplitude > largest_disorder)
+    table->fail("amplitude", fmt::format("must lie in [0, {}]: lattice spacings", largest_disorder));
+  disorder.seed = table->count("seed");
   table->finish();
-  return wave;
+  return disorder;
 }
 
 void read_fluid_law(const Fields& table, FluidScene& fluid) {
@@ -67,7 +66,7 @@ void read_fluid_law(const Fields& table, FluidScene& fluid) {
     table.fail("shift_pressure", "acts with transport = true only; remove it");
 }
 
-void read_fluid(const Fields& table, FluidScene& fluid) {
+void read_fluid(const Fields& table, const Triple& box, FluidScene& fluid) {
   fluid.particles = table.flag("particles", true);
   fluid.density = table.number("density", Quantity::density, Sign::positive);
   fluid.spacing = table.number("spacing", Quantity::length, Sign::positive);
@@ -77,7 +76,8 @@ void read_fluid(const Fields& table, FluidScene& fluid) {
     fluid.viscosity = table.number("viscosity", Quantity::viscosity, Sign::not_negative);
     read_fluid_law(table, fluid);
     fluid.velocity = table.vector("velocity", Quantity::velocity, {});
-    fluid.wave = read_wave(table);
+    fluid.flow = read_flow(table, Quantity::velocity, box);
+    fluid.disorder = read_disorder(table);
   }
   table.finish();
 }
@@ -102,12 +102,18 @@ ContactScene read_contact(const Fields& table) {
   return contact;
 }
 
-ForceScene read_force(const Fields& table, bool particles) {
+ForceScene read_force(const Fields& table, const Scene& scene) {
   ForceScene force;
-  if (particles) force.fluid = table.vector("fluid", Quantity::acceleration, {});
+  if (scene.fluid.particles) {
+    force.fluid = table.vector("fluid", Quantity::acceleration, {});
+    force.field = read_flow(table, Quantity::acceleration, scene.box);
+    if (force.field && force.field->amplitude == 0.0) force.field.reset();
+  }
   if (table.is_word("solid")) {
     if (table.word("solid") != "balance")
       table.fail("solid", "unknown choice; write \"balance\" or a list of accelerations, one per axis");
+    if (force.field)
+      table.fail("solid", "balances a uniform force only; write a list of accelerations or remove the field of force");
     force.balance = true;
   } else {
     force.solid = table.vector("solid", Quantity::acceleration, {});
@@ -155,10 +161,10 @@ Scene read_tree(const toml::table& tree, const std::string& file) {
   scene.units = root.choice<Units>("units", {{"SI", Units::si}, {"dimensionless", Units::dimensionless}});
   source.units = scene.units;
   read_box(root.required_table("box"), source, scene);
-  read_fluid(root.required_table("fluid"), scene.fluid);
+  read_fluid(root.required_table("fluid"), scene.box, scene.fluid);
   read_bodies(root.tables("body"), scene);
   if (const auto contact = root.table("contact")) scene.contact = read_contact(*contact);
-  if (const auto force = root.table("force")) scene.force = read_force(*force, scene.fluid.particles);
+  if (const auto force = root.table("force")) scene.force = read_force(*force, scene);
   scene.run = read_run(root.required_table("run"));
   if (const auto output = root.table("output")) scene.output = read_output(*output);
   root.has("case");  // for the verification suite, which checks it itself

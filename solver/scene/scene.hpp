@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "physics/flow_field.hpp"
 #include "physics/kernel.hpp"
 
 namespace mappm {
@@ -40,16 +41,17 @@ struct FluidScene {
   bool transport = true;                  // default follows the method
   double background_pressure = 0.0;       // p_b in units of c^2 rho0
   double shift_pressure = 1.0;            // p_s in units of c^2 rho0
-  /// Initial velocity field: uniform, plus a shear wave  amplitude sin(2 pi mode x_gradient / L) along `direction`.
-  Triple velocity{};
-  struct Wave {
-    double amplitude = 0.0;  // m/s
-    int direction = 0;       // axis along which the fluid moves; equal to `gradient` for a sound wave
-    int gradient = 1;        // axis along which it varies
-    int mode = 1;            // waves per box side
+  Triple velocity{};                      // at the start, m/s
+  std::optional<FlowField> flow;          // added to it at the start, m/s
+  struct Disorder {
+    double amplitude = 0.0;  // lattice spacings along each axis, at most `largest_disorder`
+    std::uint64_t seed = 0;
   };
-  std::optional<Wave> wave;
+  std::optional<Disorder> disorder;  // of the lattice at the start
 };
+
+/// A PP of the start stays in the middle half of its lattice cell.
+inline constexpr double largest_disorder = 0.25;
 
 /// One ball of a rigid body, in the frame of the body.
 struct BallScene {
@@ -68,10 +70,16 @@ struct BodyScene {
   std::vector<Triple> velocities;  // one per position
   std::vector<Triple> angular_velocities;  // one per position; in the plane only the last entry is used
   bool rotates = true;                     // false: the orientation is held
-  // wall: an infinite plane layer normal to `axis`, from `position` to `position + thickness`
+  // wall: a plane layer normal to `axis`, from `position` to `position + thickness`; along itself it fills the box, or
+  // along one axis its extent
   int axis = 1;
   double position = 0.0;
   double thickness = 0.0;
+  struct Extent {
+    int axis = 0;
+    double from = 0.0, to = 0.0;
+  };
+  std::optional<Extent> extent;
 };
 
 struct ContactScene {
@@ -84,9 +92,10 @@ struct ContactScene {
 };
 
 struct ForceScene {
-  Triple fluid{};        // acceleration of the PPs, m/s^2
-  Triple solid{};        // acceleration of the free SPs, m/s^2
-  bool balance = false;  // solid = "balance": opposes the force on the fluid, total force zero
+  Triple fluid{};                  // acceleration of the PPs, m/s^2
+  std::optional<FlowField> field;  // added to it, m/s^2; none if its amplitude is zero
+  Triple solid{};                  // acceleration of the free SPs, m/s^2
+  bool balance = false;            // solid = "balance": opposes the force on the fluid, total force zero
 };
 
 struct RunScene {

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/error.hpp"
 #include "physics/shape.hpp"
 
@@ -14,11 +17,20 @@ constexpr std::uint64_t first_face_id = std::uint64_t{1} << 62;
 /// Length of a piece of a wall along itself, rcut: wanted, and allowed from half to twice of it.
 constexpr double piece_length = 2.5;
 
-/// Number of lattice nodes a piece spans along an axis: the divisor of `count` that comes nearest to `piece_length`
-/// (in ratio). A box side shorter than a piece is one piece.
+/// Number of lattice nodes that a wall spans along an axis.
+template <int D>
+std::uint64_t nodes_of(const Scene& scene, const BodyScene& wall, const Lattice<D>& lattice, int axis) {
+  const WallSide side = side_of(scene, wall, axis);
+  if (side.whole) return lattice.count[axis];
+  const double cell = lattice.spacing[axis] * scene.fluid.cutoff;
+  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(side.length / cell + 0.5));
+}
+
+/// Number of lattice nodes a piece spans along an axis: the divisor of the wall's that comes nearest to `piece_length`
+/// (in ratio). A wall shorter than a piece is one piece.
 template <int D>
 std::uint64_t nodes_per_piece(const Scene& scene, const BodyScene& wall, const Lattice<D>& lattice, int axis) {
-  const std::uint64_t count = lattice.count[axis];
+  const std::uint64_t count = nodes_of(scene, wall, lattice, axis);
   const auto mismatch = [&](std::uint64_t nodes) {
     const double ratio = static_cast<double>(nodes) * lattice.spacing[axis] / piece_length;
     return ratio < 1.0 ? 1.0 / ratio : ratio;
@@ -29,13 +41,41 @@ std::uint64_t nodes_per_piece(const Scene& scene, const BodyScene& wall, const L
   if (best < count && mismatch(best) <= 2.0) return best;
   if (static_cast<double>(count) * lattice.spacing[axis] <= 2.0 * piece_length) return count;
   throw InputError(scene.file, wall.key, "",
-                   fmt::format("the box has {} lattice nodes along the wall, which do not divide into pieces of about "
+                   fmt::format("there are {} lattice nodes along the wall, which do not divide into pieces of about "
                                "{} rcut; change box.size or fluid.spacing so that the number has more divisors",
                                count, piece_length));
 }
 
+/// Number of pieces of a wall along an axis.
 template <int D>
-Shape<D> make_wall_shape(const Scene& scene, const BodyScene& wall, const Model<D>& model, const Lattice<D>& lattice) {
+std::uint64_t pieces_of(const Scene& scene, const BodyScene& wall, const Lattice<D>& lattice, int axis) {
+  if (axis == wall.axis) return 1;
+  return nodes_of(scene, wall, lattice, axis) / nodes_per_piece(scene, wall, lattice, axis);
+}
+
+/// Kinds of pieces of a wall: one, but for a limited wall, which has a first, a last and, between them, a middle one.
+template <int D>
+std::uint64_t kinds_of_pieces(const Scene& scene, const BodyScene& wall, const Lattice<D>& lattice) {
+  if (!is_wall(wall) || !wall.extent) return 1;
+  return std::min<std::uint64_t>(3, pieces_of(scene, wall, lattice, wall.extent->axis));
+}
+
+/// Piece number `piece` of `pieces` along the extent: 0 the first, 1 the last, 2 one between.
+std::uint64_t kind_of_piece(std::uint64_t piece, std::uint64_t pieces) {
+  return piece == 0 ? 0 : piece + 1 == pieces ? 1 : 2;
+}
+
+template <int D>
+Shape<D> make_wall_shape(const Scene& scene, const BodyScene& wall, const Model<D>& model, const Lattice<D>& lattice,
+                         std::uint64_t kind) {
+  WallEnds ends;
+  if (wall.extent) {
+    const bool alone = kinds_of_pieces(scene, wall, lattice) == 1;
+    ends = {wall.extent->axis, kind == 0, kind == 1 || alone};
+  }
+  FrozenLayer layer{model.spacing, model.rest_density};
+  // What is seen of a wall by the FPs of one that touches it lies deeper than what the fluid sees.
+  if (limited_wall(scene)) layer.thickness = HUGE_VAL;
   std::array<double, D> sides{}, spacing{};
   for (int axis = 0; axis < D; ++axis) {
     spacing[axis] = lattice.spacing[axis];
@@ -45,7 +85,7 @@ Shape<D> make_wall_shape(const Scene& scene, const BodyScene& wall, const Model<
   }
   Shape<D> shape;
   with_pair_law(model, [&](auto kernel, auto) {
-    shape = make_wall_piece<D, decltype(kernel)>(wall.axis, sides, spacing, {model.spacing, model.rest_density});
+    shape = make_wall_piece<D, decltype(kernel)>(wall.axis, sides, spacing, layer, ends);
   });
   return shape;
 }
@@ -91,19 +131,28 @@ Vec<D, double> centre_of_mass(const Scene& scene, const BodyScene& body, std::si
 
 template <int D>
 void place_wall(const Scene& scene, std::size_t index, const Lattice<D>& lattice, std::uint32_t group,
-                std::vector<PlacedSolid<D>>& solids) {
+                std::uint32_t further_shapes, std::vector<PlacedSolid<D>>& solids) {
   const BodyScene& wall = scene.bodies[index];
   std::array<std::uint64_t, D> pieces{};
   std::uint64_t total = 1;
-  for (int axis = 0; axis < D; ++axis) {
-    pieces[axis] = axis == wall.axis ? 1 : lattice.count[axis] / nodes_per_piece(scene, wall, lattice, axis);
-    total *= pieces[axis];
-  }
+  for (int axis = 0; axis < D; ++axis) total *= pieces[axis] = pieces_of(scene, wall, lattice, axis);
   for (std::uint64_t piece = 0; piece < total; ++piece) {
-    PlacedSolid<D> solid{static_cast<std::uint32_t>(index), group, 0, {}};
+    const auto body = static_cast<std::uint32_t>(index);
+    PlacedSolid<D> solid{body, body, group, 0, {}};
     std::uint64_t rest = piece;
     for (int axis = 0; axis < D; ++axis) {
-      solid.x[axis] = axis == wall.axis ? wall_middle(scene, wall) : cell_centre(rest % pieces[axis], pieces[axis]);
+      const std::uint64_t number = rest % pieces[axis];
+      const WallSide side = side_of(scene, wall, axis);
+      if (axis == wall.axis)
+        solid.x[axis] = wall_middle(scene, wall);
+      else if (side.whole)
+        solid.x[axis] = cell_centre(number, pieces[axis]);
+      else {
+        const double part = (static_cast<double>(number) + 0.5) / static_cast<double>(pieces[axis]);
+        solid.x[axis] = to_quanta(side.first + part * side.length, scene.box[static_cast<std::size_t>(axis)]);
+        if (const std::uint64_t kind = kind_of_piece(number, pieces[axis]); kind > 0)
+          solid.shape = further_shapes + static_cast<std::uint32_t>(kind - 1);
+      }
       rest /= pieces[axis];
     }
     solids.push_back(solid);
@@ -120,10 +169,14 @@ template <int D>
 std::vector<Shape<D>> make_shapes(const Scene& scene, const Model<D>& model, const Lattice<D>& lattice) {
   std::vector<Shape<D>> shapes;
   for (const BodyScene& body : scene.bodies) {
-    shapes.push_back(is_wall(body) ? make_wall_shape(scene, body, model, lattice)
+    shapes.push_back(is_wall(body) ? make_wall_shape(scene, body, model, lattice, 0)
                                    : make_ball_shape(scene, body, model));
-    if (!scene.fluid.particles) shapes.back().frozen.clear();
   }
+  for (const BodyScene& body : scene.bodies)
+    for (std::uint64_t kind = 1; kind < kinds_of_pieces(scene, body, lattice); ++kind)
+      shapes.push_back(make_wall_shape(scene, body, model, lattice, kind));
+  if (!scene.fluid.particles)
+    for (Shape<D>& shape : shapes) shape.frozen.clear();
   return shapes;
 }
 
@@ -131,12 +184,14 @@ template <int D>
 std::vector<PlacedSolid<D>> place_solids(const Scene& scene, const Model<D>& model, const Lattice<D>& lattice) {
   std::vector<PlacedSolid<D>> solids;
   std::uint32_t group = 0;
+  auto further_shapes = static_cast<std::uint32_t>(scene.bodies.size());
   for (std::size_t index = 0; index < scene.bodies.size(); ++index) {
     const BodyScene& body = scene.bodies[index];
-    if (is_wall(body)) place_wall(scene, index, lattice, group++, solids);
+    if (is_wall(body)) place_wall(scene, index, lattice, group++, further_shapes, solids);
+    further_shapes += static_cast<std::uint32_t>(kinds_of_pieces(scene, body, lattice) - 1);
+    const auto number = static_cast<std::uint32_t>(index);
     for (std::size_t member = 0; member < body.positions.size(); ++member)
-      solids.push_back(
-          {static_cast<std::uint32_t>(index), group++, member, centre_of_mass(scene, body, member, model)});
+      solids.push_back({number, number, group++, member, centre_of_mass(scene, body, member, model)});
   }
   return solids;
 }

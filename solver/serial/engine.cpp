@@ -170,6 +170,14 @@ template <int D>
 void SerialEngine<D>::move_fluid() {
   FluidParticles<D>& fluid = state_.fluid;
   const ParticleStep<D> constants = particle_step(model_, state_.step);
+  with_force_field(model_, state_.step, [&]<bool field>(std::bool_constant<field>) {
+    if constexpr (field)
+      for (std::size_t i = 0; i < fluid.size(); ++i) {
+        const Vec<D, std::int64_t> impulse = field_impulse(model_.fluid_field, position(fluid, i));
+        sums_[i].impulse += impulse;
+        for (int axis = 0; axis < D; ++axis) state_.outside_impulse[axis] += impulse[axis];
+      }
+  });
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     Vec<D, double> x = position(fluid, i), v = velocity(fluid, i);
     const RangeFault fault = advance(x, v, fluid.density()[i], sums_[i], constants);
