@@ -51,3 +51,23 @@ def minima(time: np.ndarray, values: np.ndarray) -> np.ndarray:
     left, here, right = values[lowest - 1], values[lowest], values[lowest + 1]
     shift = 0.5 * (left - right) / (left - 2 * here + right)
     return time[lowest] + shift * (time[1] - time[0])
+
+
+def values_at(points: np.ndarray, values: np.ndarray, at: np.ndarray, radius: float) -> np.ndarray:
+    """A field known at scattered `points` (n, 2), fitted at each of `at` (m, 2) by a quadratic to the points nearer than
+    `radius`, by least squares with the weight (1 - (r / radius)^2)^2. Exact for a quadratic field, one-sided beside walls.
+
+    Throws ValueError where fewer than eight points are that near: a quadratic has six coefficients.
+    """
+    found = np.empty(len(at))
+    for i, place in enumerate(at):
+        offset = (points - place) / radius
+        square = np.sum(offset**2, axis=1)
+        near = square < 1.0
+        if np.count_nonzero(near) < 8:
+            raise ValueError(f"{np.count_nonzero(near)} points within {radius:g} of {place}; take a larger radius")
+        x, y = offset[near].T
+        basis = np.column_stack([np.ones_like(x), x, y, x**2, x * y, y**2])
+        weight = 1.0 - square[near]  # the root of that of the squares
+        found[i] = np.linalg.lstsq(basis * weight[:, None], values[near] * weight, rcond=None)[0][0]
+    return found
