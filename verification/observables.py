@@ -10,10 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from verification.fits import decay_rate, extrapolate, minima
-from verification.series import read_table
 from verification.solver import Run
 
-SI = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "kg/m3": 1.0}  # of the units that scenes of two spheres are written in
+SI = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "kg/m3": 1.0, "m/s": 1.0, "GPa": 1e9}  # of the units that scenes of two spheres are written in
 
 
 def in_si(quantity: float | str) -> float:
@@ -115,31 +114,7 @@ def largest_velocity(run: Run) -> Measured:
     return Measured(float(speed.max()) / run.scene["fluid"]["sound_speed"], 0.0)
 
 
-def _impact(run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """(time, force) of the contact of the first of two spheres along x: its mass times its change of velocity a sample."""
-    table = read_table(run.folder / "solids.csv")
-    first = table["id"] == 0
-    time, velocity = table["time"][first], table["velocity_x"][first]
-    body = run.scene["body"][0]
-    mass = 4 / 3 * np.pi * in_si(body["radius"]) ** 3 * in_si(body["density"])
-    return 0.5 * (time[1:] + time[:-1]), -mass * np.diff(velocity) / np.diff(time)
-
-
-def contact_force(run: Run) -> Measured:
-    """Largest force of an impact."""
-    _, force = _impact(run)
-    return Measured(float(force.max()), 0.0)
-
-
-def contact_time(run: Run) -> Measured:
-    """From the first to the last force of an impact; known to one sample."""
-    time, force = _impact(run)
-    touching = time[force > 0]
-    sample = time[1] - time[0]
-    return Measured(float(touching[-1] - touching[0] + sample), float(sample))
-
-
 OBSERVABLES: dict[str, Callable[[Run], Measured]] = {
     function.__name__: function
-    for function in (viscosity, sound_speed, drag, largest_velocity, contact_force, contact_time)
+    for function in (viscosity, sound_speed, drag, largest_velocity)
 }
