@@ -7,6 +7,7 @@ import numpy as np
 from reference.ghia import centre_line
 from verification.curve import Chart, Curve
 from verification.fits import extrapolate, values_at
+from verification.histories import settling
 from verification.observables import SETTLED, Measured
 from verification.solver import Run, snapshot_time
 
@@ -103,8 +104,7 @@ def curves(run: Run) -> list[Chart]:
                 ),
             )
         )
-    time, energy = run.series["time"], run.series["fluid_energy"]
-    limit = extrapolate(time, energy)
-    bounds = Curve("extrapolated limit", time[[0, -1]], np.full(2, limit.value), reference=True)
-    charts.append(Chart("Kinetic energy against time", "U t / H", "kinetic energy", (bounds, Curve("measured", time, energy))))
+    charts.append(
+        settling("Kinetic energy against time", "kinetic energy", run.series["time"], run.series["fluid_energy"])
+    )
     return charts

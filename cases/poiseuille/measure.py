@@ -6,6 +6,7 @@ import numpy as np
 
 from verification.curve import Chart, Curve
 from verification.fits import extrapolate
+from verification.histories import settling
 from verification.observables import SETTLED, Measured
 from verification.solver import Run
 
@@ -53,7 +54,6 @@ def poiseuille(run: Run) -> Measured:
 def curves(run: Run) -> list[Chart]:
     found, exact = profile(run), np.linspace(0, 1, 101)
     mean = "fluid_velocity_" + "xyz"[_along(run)]
-    limit = extrapolate(run.series["time"], run.series[mean])
     return [
         Chart(
             "Velocity across the channel",
@@ -66,13 +66,5 @@ def curves(run: Run) -> list[Chart]:
         ),
         Chart("Difference from the parabola", "y / H", "(u - u_exact) / max(u_exact)",
               (Curve("PPs", found.y, found.error, points=True),)),
-        Chart(
-            "Mean velocity against time",
-            "time",
-            "mean velocity",
-            (
-                Curve("extrapolated limit", run.series["time"][[0, -1]], np.full(2, limit.value), reference=True),
-                Curve("measured", run.series["time"], run.series[mean]),
-            ),
-        ),
+        settling("Mean velocity against time", "mean velocity", run.series["time"], run.series[mean]),
     ]
