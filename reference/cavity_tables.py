@@ -1,4 +1,4 @@
-"""The tables of Ghia, Ghia and Shin (1982) for the lid-driven cavity."""
+"""Published velocities on the centre lines of the lid-driven cavity."""
 
 import csv
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-FILE = Path(__file__).parent / "published" / "ghia_1982.csv"
+PUBLISHED = Path(__file__).parent / "published"
 
 
 @dataclass(frozen=True)
@@ -17,9 +17,9 @@ class CentreLine:
     velocity: np.ndarray
 
 
-def centre_line(component: str, reynolds: int) -> CentreLine:
-    """component: "u" or "v"; reynolds: 100 or 1000."""
-    with FILE.open() as file:
+def centre_line(component: str, reynolds: int, source: str = "ghia_1982") -> CentreLine:
+    """component: "u" or "v"; reynolds: 100 or 1000; source: "ghia_1982", or "botella_1998" (1000 only)."""
+    with (PUBLISHED / f"{source}.csv").open() as file:
         rows = csv.DictReader(line for line in file if not line.startswith("#"))
         found = [(float(row["position"]), float(row[f"re{reynolds}"])) for row in rows if row["component"] == component]
     return CentreLine(*np.array(found).T)
