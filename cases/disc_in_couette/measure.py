@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from reference.stokes.channel import Disc, angular_velocity
+from reference.stokes.channel import Disc, angular_velocity, angular_velocity_without_transpose
 from verification.curve import Chart, Curve
 from verification.fits import extrapolate
 from verification.observables import Measured
@@ -43,15 +43,17 @@ def spin(run: Run) -> Measured:
 def curves(run: Run) -> list[Chart]:
     table, (box, _), disc = turning(run), run.scene["box"]["size"], run.scene["body"][0]
     width, rate = run.scene["body"][1]["position"], shear_rate(run)
-    stokes = angular_velocity(Disc(disc["radius"] / width), box / width)
+    scaled = Disc(disc["radius"] / width), box / width
     strain = rate * table["time"]
+    ends = strain[[0, -1]]
     return [
         Chart(
             "Spin of the disc",
             "G t",
             "-omega / G",
             (
-                Curve("Stokes flow", strain[[0, -1]], np.full(2, stokes), reference=True),
+                Curve("Stokes flow", ends, np.full(2, angular_velocity(*scaled)), reference=True),
+                Curve("without grad u^T", ends, np.full(2, angular_velocity_without_transpose(*scaled)), reference=True),
                 Curve("measured", strain, -table["angular_velocity"] / rate),
             ),
         ),

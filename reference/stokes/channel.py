@@ -106,3 +106,15 @@ def angular_velocity(disc: Disc, period: float, points: int = 48) -> float:
     channel = Channel(disc, period, points)
     held, turned = channel.resistance(lambda at: -channel.shear(at)), channel.resistance(channel.turning)
     return held.torque / turned.torque
+
+
+def angular_velocity_without_transpose(disc: Disc, period: float, points: int = 48) -> float:
+    """The same for a fluid whose momentum flux is mu grad u - p in place of mu (grad u + grad u^T) - p.
+
+    The velocities are the same, and so is the force on a rigid body, but not the torque: on its surface grad u^T n =
+    -omega x n, whose moment is -2 mu V omega (Gauss; in the plane V is the area). Without it the disc turns too fast, with
+    the whole shear rate in a wide channel.
+    """
+    channel = Channel(disc, period, points)
+    held, turned = channel.resistance(lambda at: -channel.shear(at)), channel.resistance(channel.turning)
+    return held.torque / (turned.torque + 2 * np.pi * disc.radius**2)

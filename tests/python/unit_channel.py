@@ -3,10 +3,16 @@
 import numpy as np
 import pytest
 
-from reference.stokes.channel import Channel, Disc, angular_velocity, stokeslets
+from reference.stokes.channel import (
+    Channel,
+    Disc,
+    angular_velocity,
+    angular_velocity_without_transpose,
+    stokeslets,
+)
 from verification.case import find_case
 
-WIDTH_AND_PERIOD = 1.0
+PERIOD = 1.0
 
 
 def test_a_stokeslet_repeats_and_solves_the_equations() -> None:
@@ -18,7 +24,7 @@ def test_a_stokeslet_repeats_and_solves_the_equations() -> None:
 
     assert at(0.7, 0.5) == pytest.approx(at(2.7, 0.5), abs=1e-13)
     steps = step * np.arange(-2, 3)
-    u = np.array([[at(0.8 + a, 0.5 + b) for b in steps] for a in steps])[:, :, :, :]
+    u = np.array([[at(0.8 + a, 0.5 + b) for b in steps] for a in steps])
     d_x = (u[2:, 1:-1] - u[:-2, 1:-1]) / (2 * step)
     d_y = (u[1:-1, 2:] - u[1:-1, :-2]) / (2 * step)
     assert d_x[1, 1, 0] + d_y[1, 1, 1] == pytest.approx([0.0, 0.0], abs=1e-4)
@@ -30,13 +36,13 @@ def test_a_stokeslet_repeats_and_solves_the_equations() -> None:
 def test_the_spin_of_the_case_does_not_change_with_the_points() -> None:
     (observable,) = find_case("disc_in_couette").observables
     disc = Disc(0.2)
-    values = [angular_velocity(disc, WIDTH_AND_PERIOD, points) for points in (24, 32, 64)]
+    values = [angular_velocity(disc, PERIOD, points) for points in (24, 32, 64)]
     assert values == pytest.approx([values[-1]] * 3, rel=1e-7)
     assert observable.reference == pytest.approx(values[-1], abs=observable.uncertainty)
 
 
 def test_the_velocity_is_met_between_the_points() -> None:
-    channel = Channel(Disc(0.2), WIDTH_AND_PERIOD)
+    channel = Channel(Disc(0.2), PERIOD)
     assert channel.resistance(lambda at: -channel.shear(at)).residual < 1e-8
 
 
@@ -44,6 +50,11 @@ def test_a_small_disc_in_a_wide_channel_turns_with_half_the_shear_rate() -> None
     slower = [0.5 - angular_velocity(Disc(radius), 2.0) for radius in (0.02, 0.04)]
     assert slower[0] < 5e-4
     assert slower[1] / slower[0] == pytest.approx(4.0, rel=0.02)  # the walls act as (R / H)^2
+
+
+def test_without_the_transposed_gradient_a_small_disc_turns_with_the_whole_shear_rate() -> None:
+    # Around a disc u = Om r + (om - Om) R^2 / r, Om = G / 2: du/dr = 2 Om - om vanishes at om = G.
+    assert angular_velocity_without_transpose(Disc(0.01), 2.0) == pytest.approx(1.0, abs=1e-3)
 
 
 def test_turning_and_moving_are_reciprocal() -> None:
