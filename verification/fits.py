@@ -79,3 +79,23 @@ def damped_oscillation(time: np.ndarray, values: np.ndarray) -> Oscillation | No
     variance = np.sum((values - model) ** 2) / max(1, len(time) - 4)
     errors = np.sqrt(variance * np.diag(np.linalg.inv(slopes.T @ slopes)))
     return Oscillation(float(frequency), float(damping), float(errors[0]), float(errors[1]))
+
+
+def values_at(points: np.ndarray, values: np.ndarray, at: np.ndarray, radius: float) -> np.ndarray:
+    """A field known at scattered `points` (n, 2), fitted at each of `at` (m, 2) by a quadratic to the points nearer than
+    `radius`, by least squares with the weight (1 - (r / radius)^2)^2. Exact for a quadratic field, one-sided beside walls.
+
+    Throws ValueError where fewer than eight points are that near: a quadratic has six coefficients.
+    """
+    found = np.empty(len(at))
+    for i, place in enumerate(at):
+        offset = (points - place) / radius
+        square = np.sum(offset**2, axis=1)
+        near = square < 1.0
+        if np.count_nonzero(near) < 8:
+            raise ValueError(f"{np.count_nonzero(near)} points within {radius:g} of {place}; take a larger radius")
+        x, y = offset[near].T
+        basis = np.column_stack([np.ones_like(x), x, y, x**2, x * y, y**2])
+        weight = 1.0 - square[near]  # the root of that of the squares
+        found[i] = np.linalg.lstsq(basis * weight[:, None], values[near] * weight, rcond=None)[0][0]
+    return found

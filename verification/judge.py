@@ -133,7 +133,7 @@ class Outcome:
         return text + ")"
 
 
-def _module(case: Case) -> ModuleType | None:
+def case_module(case: Case) -> ModuleType | None:
     """measure.py in the folder of the case, if it has one."""
     file = case.file.parent / "measure.py"
     if not file.exists():
@@ -146,7 +146,7 @@ def _module(case: Case) -> ModuleType | None:
 
 def measures(case: Case) -> dict[str, Callable[[Run], Measured]]:
     """Observables by name: those of the case over those that all share."""
-    own = _module(case)
+    own = case_module(case)
     return OBSERVABLES | {name: value for name, value in vars(own).items() if callable(value)} if own else OBSERVABLES
 
 
@@ -160,7 +160,7 @@ def measure(case: Case, observable: Observable, finished: Run) -> Measured:
 
 def curves_of(case: Case, finished: Run) -> list:
     """What measure.py of the case draws: charts of verification/curve.py."""
-    own = _module(case)
+    own = case_module(case)
     return own.curves(finished) if own and hasattr(own, "curves") else []
 
 

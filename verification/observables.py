@@ -11,10 +11,9 @@ import numpy as np
 
 from verification.fits import decay_rate, extrapolate
 from verification.flows import amplitudes, initial_flow, viscosity_of
-from verification.series import read_table
 from verification.solver import Run
 
-SI = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "kg/m3": 1.0}  # of the units that scenes of two spheres are written in
+SI = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "kg/m3": 1.0, "m/s": 1.0, "GPa": 1e9}  # of the units that scenes of two spheres are written in
 
 
 def in_si(quantity: float | str) -> float:
@@ -51,25 +50,6 @@ def viscosity(run: Run) -> Measured:
     rate, error = decay_rate(time[window], amplitude[window])
     declared = viscosity_of(run) * flow.eigenvalue
     return Measured(rate / declared, error / declared)
-
-
-def poiseuille(run: Run) -> Measured:
-    """Root-mean-square difference between the last velocity profile and the parabola g y (H - y) / (2 nu), in units of
-    its largest value."""
-    fluid, (wall,) = run.scene["fluid"], [body for body in run.scene["body"] if body["shape"] == "wall"]
-    normal = "xyz".index(wall["axis"])
-    force = np.array(run.scene["force"]["fluid"])
-    along = int(np.argmax(np.abs(force)))
-    side = run.scene["box"]["size"][normal]
-    width = side - wall["thickness"]
-    particles = run.fluid()
-    y = (particles["points"][:, normal] - wall["position"] - wall["thickness"]) % side
-    exact = force[along] * y * (width - y) / (2 * fluid["viscosity"] / fluid["density"])
-    largest = abs(force[along]) * width**2 / (8 * fluid["viscosity"] / fluid["density"])
-    difference = (particles["velocity"][:, along] - exact) / largest
-    moving = extrapolate(run.series["time"], run.series["fluid_velocity_" + "xyz"[along]])
-    objection = "" if moving.gap < SETTLED else f"the flow has not settled: {100 * moving.gap:.2f} % to go"
-    return Measured(float(np.sqrt(np.mean(difference**2))), moving.gap, objection)
 
 
 def _cell(run: Run) -> tuple[int, float, float, float]:
@@ -118,31 +98,7 @@ def largest_velocity(run: Run) -> Measured:
     return Measured(float(speed.max()) / run.scene["fluid"]["sound_speed"], 0.0)
 
 
-def _impact(run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """(time, force) of the contact of the first of two spheres along x: its mass times its change of velocity a sample."""
-    table = read_table(run.folder / "solids.csv")
-    first = table["id"] == 0
-    time, velocity = table["time"][first], table["velocity_x"][first]
-    body = run.scene["body"][0]
-    mass = 4 / 3 * np.pi * in_si(body["radius"]) ** 3 * in_si(body["density"])
-    return 0.5 * (time[1:] + time[:-1]), -mass * np.diff(velocity) / np.diff(time)
-
-
-def contact_force(run: Run) -> Measured:
-    """Largest force of an impact."""
-    _, force = _impact(run)
-    return Measured(float(force.max()), 0.0)
-
-
-def contact_time(run: Run) -> Measured:
-    """From the first to the last force of an impact; known to one sample."""
-    time, force = _impact(run)
-    touching = time[force > 0]
-    sample = time[1] - time[0]
-    return Measured(float(touching[-1] - touching[0] + sample), float(sample))
-
-
 OBSERVABLES: dict[str, Callable[[Run], Measured]] = {
     function.__name__: function
-    for function in (viscosity, poiseuille, drag, largest_velocity, contact_force, contact_time)
+    for function in (viscosity, drag, largest_velocity)
 }
