@@ -8,7 +8,7 @@ import sys
 from datetime import UTC, datetime
 from pathlib import Path
 
-from verification.solver import ROOT
+ROOT = Path(__file__).resolve().parent.parent.parent
 
 
 def _commit() -> str:
