@@ -21,7 +21,7 @@ from pathlib import Path
 from tests.robustness import processes, summary
 from verification.solver import ROOT, Options, run, start
 
-SCENE = ROOT / "tests" / "python" / "scenes" / "crossing_2d.toml"
+SCENE = ROOT / "cases" / "crossing_2d" / "case.toml"
 STEPS, INTERVAL, SAMPLE = 600, 6, 2
 OVERRIDES = (f"output.checkpoint={INTERVAL}", f"output.sample={SAMPLE}", "output.solids=true", "output.snapshot=30")
 TABLES = ("series.csv", "solids.csv")
