@@ -56,7 +56,7 @@ class Oscillation:
 
 
 def damped_oscillation(time: np.ndarray, values: np.ndarray) -> Oscillation | None:
-    """Least squares by Gauss and Newton from the zero crossings; None with fewer than three of them, or no convergence."""
+    """Least squares by Gauss and Newton from the zero crossings; None with fewer than three, or without convergence."""
     crossings = np.flatnonzero(values[1:] * values[:-1] < 0)
     if len(crossings) < 3:
         return None

@@ -1,8 +1,8 @@
 """The exact periodic flows that a scene can start with or be driven by, as formulas of their own.
 
-A flow is one eigenfunction f of the Laplacian, lap f = -lambda f, whose convection is a gradient or vanishes; so it decays
-as exp(-nu lambda t) in an incompressible fluid, and a steady acceleration nu lambda A f keeps it as it is. Of vortices in
-space only the start is exact: their convection is no gradient.
+A flow is one eigenfunction f of the Laplacian, lap f = -lambda f, whose convection is a gradient or vanishes; so it
+decays as exp(-nu lambda t) in an incompressible fluid, and a steady acceleration nu lambda A f keeps it as it is. Of
+vortices in space only the start is exact: their convection is no gradient.
 """
 
 from collections.abc import Iterator
@@ -104,4 +104,5 @@ def decay_chart(run: Run) -> Chart:
     time, amplitude = amplitudes(run, flow)
     fine = np.linspace(0.0, time[-1], 200)
     exact = Curve("exact", fine, np.exp(-viscosity_of(run) * flow.eigenvalue * fine), reference=True)
-    return Chart("Amplitude of the flow", "time", "u / U", (exact, Curve("measured", time, amplitude, points=True)), True)
+    measured = Curve("measured", time, amplitude, points=True)
+    return Chart("Amplitude of the flow", "time", "u / U", (exact, measured), log=True)

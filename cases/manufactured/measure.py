@@ -29,4 +29,5 @@ def field_error(run: Run) -> Measured:
 
 def curves(run: Run) -> list[Chart]:
     time, error = _errors(run)
-    return [Chart("Error of the velocity field", "time", "rms(u - u_exact) / rms(u_exact)", (Curve("measured", time, error),))]
+    measured = Curve("measured", time, error)
+    return [Chart("Error of the velocity field", "time", "rms(u - u_exact) / rms(u_exact)", (measured,))]

@@ -16,7 +16,7 @@ def _sound(points: np.ndarray, k: np.ndarray) -> np.ndarray:
     """The two standing waves that a start at uniform density sets off: along x and along y, of twice the wave number.
 
     The pressure of the vortices, -U^2 (cos 2kx + cos 2ky) / 4, is missing at the start; so sound of velocity U^2 / (4 c)
-    rings until friction ends it. Linear acoustics; Chorin and Marsden, A Mathematical Introduction to Fluid Mechanics.
+    rings until friction ends it (linear acoustics).
     """
     waves = np.zeros((2, *points.shape))
     for axis in range(2):
@@ -25,8 +25,8 @@ def _sound(points: np.ndarray, k: np.ndarray) -> np.ndarray:
 
 
 def field_error(run: Run) -> Measured:
-    """Root-mean-square error of the velocity over that of the exact field, when the exact energy has fallen to a quarter;
-    without the standing sound waves of the start."""
+    """Root-mean-square error of the velocity over that of the exact field, when the exact energy has fallen to a
+    quarter; without the standing sound waves of the start."""
     flow, quarter = initial_flow(run), np.log(2.0) / _rate(run)
     field = min(fields(run), key=lambda one: abs(one.time - quarter))
     if abs(field.time / quarter - 1) > 0.02:

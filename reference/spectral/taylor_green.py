@@ -2,9 +2,9 @@
 
     python3 reference/spectral/taylor_green.py --reynolds 10 --points 48 --out cases/taylor_green_3d/reference.csv
 
-Units: U = k = 1, so the box is 2 pi wide and nu = 1 / Re. Start: u = sin x cos y cos z, v = -cos x sin y cos z, w = 0 (Taylor
-and Green 1937). Products in real space with the 2/3 rule, the pressure by projection, viscosity exactly by an integrating
-factor, classic Runge-Kutta of fourth order in time (Canuto, Hussaini, Quarteroni and Zang, Spectral Methods, 2007).
+Units: U = k = 1, so the box is 2 pi wide and nu = 1 / Re. Start: u = sin x cos y cos z, v = -cos x sin y cos z, w = 0
+(Taylor and Green 1937). Products in real space with the 2/3 rule, the pressure by projection, viscosity exactly by an
+integrating factor, classic Runge-Kutta of fourth order in time (Canuto, Hussaini, Quarteroni and Zang, Spectral Methods, 2007).
 """
 
 import argparse
@@ -81,7 +81,10 @@ def main() -> None:
     times = np.linspace(0.0, given.end, given.rows)
     energies = decay(vortices(given.points), given.reynolds, times, given.steps)
     rows = "".join(f"{time:.4f},{energy:.10f}\n" for time, energy in zip(times, energies, strict=True))
-    command = f"--reynolds {given.reynolds:g} --points {given.points} --end {given.end:g} --rows {given.rows} --steps {given.steps}"
+    command = (
+        f"--reynolds {given.reynolds:g} --points {given.points} --end {given.end:g} "
+        f"--rows {given.rows} --steps {given.steps}"
+    )
     given.out.write_text(
         f"# python3 reference/spectral/taylor_green.py {command}\n"
         f"# sha256 of the rows below the names: {hashlib.sha256(rows.encode()).hexdigest()}\nk U t,E / E(0)\n{rows}"

@@ -42,8 +42,8 @@ def test_a_flow_is_solenoidal_and_an_eigenfunction_of_the_laplacian(table: dict,
 def test_vorticity_of_the_abc_flow_is_parallel_to_it() -> None:
     flow, h = read_flow({"abc": {"amplitude": 1.0}}, SPACE), 1e-4
     points = np.random.default_rng(2).uniform(size=(20, 3))
-    slope = [(flow.shape(points + h * e) - flow.shape(points - h * e)) / (2 * h) for e in np.eye(3)]  # [j][:, i] = du_i/dx_j
-    curl = np.column_stack([slope[1][:, 2] - slope[2][:, 1], slope[2][:, 0] - slope[0][:, 2], slope[0][:, 1] - slope[1][:, 0]])
+    x, y, z = ((flow.shape(points + h * e) - flow.shape(points - h * e)) / (2 * h) for e in np.eye(3))  # du/dx ...
+    curl = np.column_stack([y[:, 2] - z[:, 1], z[:, 0] - x[:, 2], x[:, 1] - y[:, 0]])
     assert curl == pytest.approx(2 * math.pi * flow.shape(points), rel=1e-5, abs=1e-5)
 
 

@@ -46,5 +46,6 @@ def test_the_stored_file_is_whole_and_belongs_to_the_scene() -> None:
     assert hashlib.sha256("".join(rows).encode()).hexdigest() == checksum.split()[-1]
     scene = find_case("taylor_green_3d").scene
     fluid = scene["fluid"]
-    reynolds = fluid["vortices"]["amplitude"] * fluid["density"] / (fluid["viscosity"] * 2 * np.pi / scene["box"]["size"][0])
+    k = 2 * np.pi / scene["box"]["size"][0]
+    reynolds = fluid["vortices"]["amplitude"] * fluid["density"] / (fluid["viscosity"] * k)
     assert float(re.search(r"--reynolds (\S+)", command)[1]) == pytest.approx(reynolds, rel=1e-6)

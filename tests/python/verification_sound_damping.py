@@ -1,4 +1,4 @@
-"""Damping of a standing sound wave. Oracle: its kinetic energy falls as exp(-nu k^2 t).
+"""Damping of a standing sound wave. Oracle: its amplitude falls as exp(-nu k^2 t / 2).
 
 The viscous force of the pair law is mu times the Laplacian of the velocity, for sound too: there is no further 4/3 and
 no bulk viscosity. The period alone sees neither a density nor a position that is one step late; such a fault feeds the
@@ -7,24 +7,15 @@ wave by omega^2 dt = 0.036, nearly twice what viscosity takes.
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from verification.fits import minima
-from verification.solver import ROOT, Options, run
-
-WAVE_NUMBER = 2 * np.pi
+from support import judged
 
 
 def damping(folder: Path, viscosity: float, *overrides: str) -> float:
-    """Rate at which the maxima of the kinetic energy fall, over nu k^2. The density of the scene is 1."""
-    options = Options(overrides=(f"fluid.viscosity={viscosity}", "output.snapshot=0", *overrides))
-    series = run(ROOT / "cases" / "sound_wave" / "case.toml", folder, options).series
-    time, energy = series["time"], series["fluid_energy"]
-    top = minima(time, -energy)
-    assert len(top) >= 4
-    slope, _ = np.polyfit(top, np.log(np.interp(top, time, energy)), 1)
-    return float(-slope / (viscosity * WAVE_NUMBER**2))
+    """Damping of the wave of the case over nu k^2 / 2."""
+    _, outcomes = judged("sound_wave", folder, f"fluid.viscosity={viscosity}", *overrides)
+    return outcomes["sound_damping"].measured.value
 
 
 @pytest.mark.parametrize(("method", "viscosity", "goal"), [("classic", 5e-4, 0.005), ("transport", 2e-3, 0.015)])
