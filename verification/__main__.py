@@ -7,7 +7,7 @@ import textwrap
 from pathlib import Path
 
 from verification.case import TIERS, all_cases, find_case
-from verification.compare import compare
+from verification.compare import compare, explain
 from verification.errors import CaseError, SolverError
 from verification.result import run_case, run_with
 from verification.solver import ROOT, Options, run
@@ -35,13 +35,17 @@ def run_one(arguments: argparse.Namespace) -> int:
     return 0 if result.holds else 1
 
 
-def compare_bits(scene: Path, ranks: list[int], steps: int | None, every: int | None) -> int:
-    """The serial reference and `ranks` of the parallel solver."""
+def compare_bits(scene: Path, ranks: list[int], steps: int | None, every: int | None, build: Path | None) -> int:
+    """The serial reference and `ranks` of the parallel solver, these from the folder `build` where it is given."""
     overrides = () if every is None else (f"output.sample={every}",)
-    variants = [Options(ranks=count, steps=steps, overrides=overrides) for count in [0, *ranks]]
+    variants = [
+        Options(ranks=count, steps=steps, overrides=overrides, build=build if count else None) for count in [0, *ranks]
+    ]
     with tempfile.TemporaryDirectory() as folder:
         comparison = compare(scene, Path(folder), variants)
-    print("\n".join(comparison.lines))
+        print("\n".join(comparison.lines), flush=True)
+        if not comparison.equal:
+            print("\n".join(explain(scene, Path(folder), comparison).lines))
     return 0 if comparison.equal else 1
 
 
@@ -68,12 +72,14 @@ def _parser() -> argparse.ArgumentParser:
     report = commands.add_parser("report", help="write the report")
     report.add_argument("--tier", choices=TIERS, default="quick")
     report.add_argument("--out", type=Path, default=ROOT / "reports" / "out")
+    report.add_argument("--publish", action="store_true", help="also copy page, summary and key figures to reports/published")
 
     bits = commands.add_parser("compare-bits", help="compare digests of the serial reference and the parallel solver")
     bits.add_argument("scene", type=Path)
     bits.add_argument("--ranks", type=_ranks, default=[1, 2], metavar="1,2,4", help="default 1,2")
     bits.add_argument("--steps", type=int, help="default: those of the scene")
     bits.add_argument("--every", type=int, metavar="K", help="steps between comparisons (default: those of the scene)")
+    bits.add_argument("--build", type=Path, metavar="DIR", help="folder whose bin/mappm is compared (default: as for run)")
     return parser
 
 
@@ -85,11 +91,11 @@ def main() -> int:
         case "run":
             return run_one(arguments)
         case "compare-bits":
-            return compare_bits(arguments.scene, arguments.ranks, arguments.steps, arguments.every)
+            return compare_bits(arguments.scene, arguments.ranks, arguments.steps, arguments.every, arguments.build)
         case "report":
             from verification.report import write_report  # drawing libraries load slowly
 
-            return write_report(arguments.tier, arguments.out)
+            return write_report(arguments.tier, arguments.out, arguments.publish)
 
 
 if __name__ == "__main__":

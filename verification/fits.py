@@ -45,12 +45,40 @@ def decay_rate(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
     return float(-coefficients[0]), float(np.sqrt(covariance[0, 0]))
 
 
-def minima(time: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Times of the minima of an oscillating series, each from the parabola through its lowest three samples."""
-    lowest = 1 + np.flatnonzero((values[1:-1] < values[:-2]) & (values[1:-1] <= values[2:]))
-    left, here, right = values[lowest - 1], values[lowest], values[lowest + 1]
-    shift = 0.5 * (left - right) / (left - 2 * here + right)
-    return time[lowest] + shift * (time[1] - time[0])
+@dataclass(frozen=True)
+class Oscillation:
+    """exp(-damping t) (a cos(frequency t) + b sin(frequency t)), with the standard errors of the first two."""
+
+    frequency: float
+    damping: float
+    frequency_error: float
+    damping_error: float
+
+
+def damped_oscillation(time: np.ndarray, values: np.ndarray) -> Oscillation | None:
+    """Least squares by Gauss and Newton from the zero crossings; None with fewer than three of them, or no convergence."""
+    crossings = np.flatnonzero(values[1:] * values[:-1] < 0)
+    if len(crossings) < 3:
+        return None
+    frequency, damping = np.pi * (len(crossings) - 1) / (time[crossings[-1]] - time[crossings[0]]), 0.0
+    bound = 1.0 / (time[1] - time[0])  # beyond it the samples could not show the oscillation
+    for _ in range(100):
+        decay = np.exp(-damping * time)
+        basis = np.column_stack([decay * np.cos(frequency * time), decay * np.sin(frequency * time)])
+        (a, b), *_ = np.linalg.lstsq(basis, values, rcond=None)
+        model = basis @ [a, b]
+        slopes = np.column_stack([time * (basis @ [b, -a]), -time * model, basis])
+        change, *_ = np.linalg.lstsq(slopes, values - model, rcond=None)
+        frequency, damping = frequency + change[0], damping + change[1]
+        if not max(abs(frequency), abs(damping)) < bound:
+            return None
+        if np.abs(change[:2]).max() < 1e-12 * frequency:
+            break
+    else:
+        return None
+    variance = np.sum((values - model) ** 2) / max(1, len(time) - 4)
+    errors = np.sqrt(variance * np.diag(np.linalg.inv(slopes.T @ slopes)))
+    return Oscillation(float(frequency), float(damping), float(errors[0]), float(errors[1]))
 
 
 def values_at(points: np.ndarray, values: np.ndarray, at: np.ndarray, radius: float) -> np.ndarray:

@@ -9,7 +9,7 @@ is the goal. Where a manifest offers no source of u_num, the goal alone decides,
 import importlib.util
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import ModuleType
 
 import numpy as np
@@ -204,7 +204,7 @@ def beside(case: Case, runs: dict[tuple[str, ...], Run]) -> list[tuple[str, Outc
     """What the manifest asks to measure beside its case, by its label: reported as it is."""
     base = case.quick_finest().overrides
     return [
-        (entry.label, Outcome(observable, measure(case, observable, runs[base + entry.overrides])))
+        (entry.label, Outcome(replace(observable, order=None), measure(case, observable, runs[base + entry.overrides])))
         for entry in case.beside
         for observable in case.observables
     ]

@@ -9,10 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verification.fits import decay_rate, extrapolate, minima
+from verification.fits import decay_rate, extrapolate
+from verification.flows import amplitudes, initial_flow, viscosity_of
 from verification.solver import Run
 
-SI = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "kg/m3": 1.0, "m/s": 1.0, "GPa": 1e9}  # of the units that scenes of two spheres are written in
+# Units that scenes of two spheres are written in.
+SI = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "kg/m3": 1.0, "m/s": 1.0, "GPa": 1e9}
 
 
 def in_si(quantity: float | str) -> float:
@@ -35,37 +37,20 @@ class Measured:
     objection: str = ""
 
 
-def _wave_number(run: Run) -> float:
-    wave = run.scene["fluid"]["wave"]
-    return 2 * np.pi * wave.get("mode", 1) / run.scene["box"]["size"]["xyz".index(wave["gradient"])]
-
-
 def viscosity(run: Run) -> Measured:
-    """nu / nu_declared of a decaying shear wave: its kinetic energy falls as exp(-2 nu k^2 t).
+    """nu / nu_declared of a flow that decays as exp(-nu lambda t): see verification/flows.py.
 
-    Measured over the fall of the energy from 0.8 to 0.1 of its start: past the first adjustment of the lattice, and well
-    above the energy of the particles' disorder.
+    Measured while the kinetic energy of the flow falls from 0.8 to 0.1 of its start: past the first adjustment of the
+    lattice. Projected on the flow, so that the energy of the particles' disorder does not count.
     """
-    fluid, series = run.scene["fluid"], run.series
-    energy = series["fluid_energy"] / series["fluid_energy"][0]
-    window = (energy < 0.8) & (energy > 0.1)
-    rate, error = decay_rate(series["time"][window], energy[window])
-    declared = 2 * fluid["viscosity"] / fluid["density"] * _wave_number(run) ** 2
+    flow = initial_flow(run)
+    time, amplitude = amplitudes(run, flow)
+    window = (amplitude**2 < 0.8) & (amplitude**2 > 0.1)
+    if np.count_nonzero(window) < 5:
+        return Measured(float("nan"), float("inf"), "fewer than five snapshots while the flow decays; write more")
+    rate, error = decay_rate(time[window], amplitude[window])
+    declared = viscosity_of(run) * flow.eigenvalue
     return Measured(rate / declared, error / declared)
-
-
-def sound_speed(run: Run) -> Measured:
-    """c / c_declared of a standing sound wave: its kinetic energy goes as cos^2(c k t), with minima pi / (c k) apart.
-
-    The damping, isothermal sound's nu k^2 or so, lowers the frequency by less than 1e-4 in the cases here.
-    """
-    times = minima(run.series["time"], run.series["fluid_energy"])
-    if len(times) < 4:
-        return Measured(float("nan"), float("inf"), f"only {len(times)} minima of the kinetic energy; run longer")
-    index = np.arange(len(times))
-    (spacing, _), covariance = np.polyfit(index, times, 1, cov=True)
-    speed = np.pi / (spacing * _wave_number(run)) / run.scene["fluid"]["sound_speed"]
-    return Measured(float(speed), float(speed * np.sqrt(covariance[0, 0]) / spacing))
 
 
 def _cell(run: Run) -> tuple[int, float, float, float]:
@@ -116,5 +101,5 @@ def largest_velocity(run: Run) -> Measured:
 
 OBSERVABLES: dict[str, Callable[[Run], Measured]] = {
     function.__name__: function
-    for function in (viscosity, sound_speed, drag, largest_velocity)
+    for function in (viscosity, drag, largest_velocity)
 }

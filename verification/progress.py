@@ -3,11 +3,12 @@
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from verification.solver import Options, Run, SolverError, start
+from verification.errors import SolverError
+from verification.solver import Options, Run, start
 
 
 def _clock(seconds: float) -> str:
@@ -31,28 +32,34 @@ class Progress:
         self._moving = sys.stdout.isatty()
 
     @contextmanager
-    def stage(self, title: str) -> Iterator[None]:
+    def stage(self, title: str) -> Iterator[Callable[..., None]]:
+        """Yields say(text, seconds left or None), for what goes on inside."""
         self._stage += 1
-        started = time.monotonic()
+        started = said = time.monotonic()
         self._say(f"[{self._stage}/{self._stages}] {title}")
-        yield
+
+        def say(text: str, left: float | None = None) -> None:
+            nonlocal said
+            if self._moving or time.monotonic() - said > 20:
+                said = time.monotonic()
+                to_go = "" if left is None else f", {_clock(left)} to go"
+                self._say(f"[{self._stage}/{self._stages}] {title}: {text}{to_go}")
+
+        yield say
         self._say(f"[{self._stage}/{self._stages}] {title}: done in {_clock(time.monotonic() - started)}", end="\n")
 
     def run(self, scene: Path, out: Path, options: Options, steps: int, title: str) -> Run:
         """Runs a scene of `steps` steps, saying how far it is. Throws SolverError."""
-        with self.stage(title):
+        with self.stage(title) as say:
             process = start(scene, out, options)
-            started = said = time.monotonic()
+            started = time.monotonic()
             while True:
                 try:
                     stdout, stderr = process.communicate(timeout=1)
                     break
                 except subprocess.TimeoutExpired:
-                    done, now = _steps_done(out / "series.csv"), time.monotonic()
-                    if done and (self._moving or now - said > 30):
-                        said = now
-                        left = (now - started) * (steps - done) / done
-                        self._say(f"[{self._stage}/{self._stages}] {title}: step {done} of {steps}, {_clock(left)} to go")
+                    if done := _steps_done(out / "series.csv"):
+                        say(f"step {done} of {steps}", (time.monotonic() - started) * (steps - done) / done)
             if process.returncode != 0:
                 raise SolverError(f"{title} ended with {process.returncode}\n{stdout[-2000:]}{stderr[-4000:]}")
         return Run(out, options)

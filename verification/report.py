@@ -1,53 +1,60 @@
-"""The report: one self-contained HTML file. Every figure in it comes from the runs made for it."""
+"""The report: one self-contained HTML page and a Markdown summary. Every figure in it comes from the runs made for it, or
+names the command, date and checksum of the stored one.
+"""
 
-import base64
-import importlib.metadata
-import platform
+import json
+import math
 import shutil
-import subprocess
-from datetime import UTC, datetime
+import time
+from datetime import timedelta
 from pathlib import Path
 
-import jinja2
-
-from verification.case import Beside, Case, all_cases, find_case
-from verification.charts import slip_and_drag
-from verification.compare import Comparison, compare_runs
-from verification.judge import CORRECT, Outcome, run_and_judge
-from verification.pictures import velocity_field
+from verification.case import Case, all_cases, find_case
+from verification.figures import CaseFigures, case_figures, shown_figures, suite_figures
+from verification.history import changes, errors_of, read_history
+from verification.judge import CORRECT
+from verification.page import write_page, write_summary
 from verification.progress import Progress
+from verification.provenance import checksum, provenance, reference_checksums
+from verification.result import CaseResult, judged, run_bits
+from verification.runner import Job, cores, jobs_of, run_jobs
 from verification.solver import ROOT, Options, Run
 
 SHOWN = "gas_solid_small"
 STEPS = {"quick": 20_000, "full": 60_000}  # of the long run
-COMPARED_STEPS, COMPARED_EVERY = 1000, 50
-PACKAGES = ("numpy", "h5py", "pyvista", "vtk", "matplotlib", "Jinja2")
+PUBLISHED = ROOT / "reports" / "published"
+STORED = {"mutation": "mutation.json", "robustness": "robustness.json"}  # made by commands of their own, kept in PUBLISHED
 
 
-def _embedded(file: Path) -> str:
-    return "data:image/png;base64," + base64.b64encode(file.read_bytes()).decode()
+def _cases(tier: str) -> list[Case]:
+    return [case for case in all_cases() if case.judged and (tier == "full" or case.tier == "quick")]
 
 
-def _cores() -> str:
-    for line in Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            return line.partition(":")[2].strip()
-    return platform.processor()
+def _run_all(progress: Progress, cases: list[Case], tier: str, folder: Path) -> dict:
+    jobs = [job for case in cases for job in jobs_of(case, tier)]
+    with progress.stage(f"{len(jobs)} runs of {len(cases)} cases") as say:
+        started, ended = time.monotonic(), 0
+
+        def done(job: Job, share: float) -> None:
+            nonlocal ended
+            ended += 1
+            left = (time.monotonic() - started) * (1 - share) / share
+            say(f"{ended} of {len(jobs)} runs, last {job.case.name}", left)
+
+        return run_jobs(jobs, folder, Options(), cores(), done)
 
 
-def _provenance(run: Run) -> dict[str, str]:
-    record = run.record
-    return {
-        "commit": record["commit"],
-        "compiler": f"{record['compiler']}, {record['flags']}",
-        "host": f"{record['host']}, {_cores()}",
-        "system": platform.platform(),
-        "Open MPI": subprocess.run(["mpirun", "--version"], capture_output=True, text=True).stdout.splitlines()[0],
-        "Python": ", ".join(
-            [platform.python_version(), *(f"{name} {importlib.metadata.version(name)}" for name in PACKAGES)]
-        ),
-        "date": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
-    }
+def _judge_all(progress: Progress, cases: list[Case], tier: str, folder: Path) -> list[CaseResult]:
+    """Failures first."""
+    runs = _run_all(progress, cases, tier, folder)
+    results = []
+    for case in cases:
+        bits = None
+        if case.equivalence is not None:
+            with progress.stage(f"bits of {case.name}") as say:
+                bits = run_bits(case, folder, say)
+        results.append(judged(case, tier, {key: run for (name, key), run in runs.items() if name == case.name}, bits))
+    return sorted(results, key=lambda result: result.holds)
 
 
 def _ledger(run: Run) -> list[dict]:
@@ -60,101 +67,73 @@ def _ledger(run: Run) -> list[dict]:
     ]
 
 
-def _digest_rows(comparison: Comparison) -> list[dict]:
-    tables = [run.series for run in comparison.runs]
-    rows = []
-    for i, step in enumerate(tables[0]["step"]):
-        digests = [table["digest"][i] if i < len(table) else "no row" for table in tables]
-        rows.append({"step": int(step), "digests": digests, "equal": len(set(digests)) == 1})
-    return rows
+def _stored() -> dict[str, dict]:
+    """Tables that other commands made: their content, file and checksum."""
+    found = {}
+    for name, file in STORED.items():
+        path = PUBLISHED / file
+        if path.exists():
+            found[name] = {"data": json.loads(path.read_text()), "file": str(path.relative_to(ROOT)), "sha256": checksum(path)}
+    return found
 
 
-def _compare(progress: Progress, scene: Path, folder: Path) -> Comparison:
-    overrides = (f"output.sample={COMPARED_EVERY}",)
-    variants = [Options(ranks=ranks, steps=COMPARED_STEPS, overrides=overrides) for ranks in (0, 1, 2)]
-    return compare_runs(
-        tuple(
-            progress.run(scene, folder / str(options.ranks), options, COMPARED_STEPS, f"digests, {options.label}")
-            for options in variants
-        )
-    )
+def _finite(value):
+    """NaN and infinity have no JSON."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _judged(progress: Progress, cases: list[Case], folder: Path) -> list[tuple[str, Outcome]]:
-    """Outcomes by the name of their case, failures first."""
-    outcomes = []
-    for case in cases:
-        with progress.stage(f"case {case.name}"):
-            outcomes += [(case.name, outcome) for outcome in run_and_judge(case, folder / case.name)[1]]
-    return sorted(outcomes, key=lambda pair: pair[1].verdict == CORRECT)
+def _results_json(tier: str, origin: dict[str, str], results: list[CaseResult]) -> dict:
+    errors = {key: {name: _finite(value) for name, value in row.items()} for key, row in errors_of(results).items()}
+    return {"date": origin["date"], "commit": origin["commit"], "tier": tier, "errors": errors}
 
 
-def _beside(progress: Progress, cases: list[Case], folder: Path) -> list[tuple[str, Outcome]]:
-    """What the manifests ask to measure beside their case: reported as it is, without a verdict."""
-    measured = []
-    for case, beside in _pairs(cases):
-        name = f"{case.name}, {beside.label}"
-        with progress.stage(f"case {name}"):
-            options = Options(overrides=beside.overrides)
-            measured += [(name, outcome) for outcome in run_and_judge(case, folder / name, options)[1]]
-    return measured
+def _publish(out: Path, figures: list[Path], entry: dict) -> None:
+    """Copies page, summary and its pictures to reports/published and adds an entry to the history there."""
+    PUBLISHED.mkdir(parents=True, exist_ok=True)
+    for file in (out / "index.html", out / "summary.md", *figures):
+        shutil.copy(file, PUBLISHED / file.name)
+    history = [*read_history(PUBLISHED / "history.json"), entry]
+    (PUBLISHED / "history.json").write_text(json.dumps(history, indent=1) + "\n")
 
 
-def _pairs(cases: list[Case]) -> list[tuple[Case, Beside]]:
-    return [(case, beside) for case in cases for beside in case.beside]
-
-
-def _judged_cases(tier: str) -> list[Case]:
-    return [case for case in all_cases() if case.observables and (tier == "full" or case.tier == "quick")]
-
-
-def write_report(tier: str, out: Path) -> int:
-    """Runs all that the tier asks for and writes out/index.html. Returns 0 where everything holds."""
-    scene = find_case(SHOWN).file
+def write_report(tier: str, out: Path, publish: bool) -> int:
+    """Runs all that the tier asks for, writes out/index.html, out/summary.md and out/results.json. Returns 0 where everything
+    holds."""
+    started = time.monotonic()
     shutil.rmtree(out, ignore_errors=True)
     runs = out / "runs"
     runs.mkdir(parents=True)
-    cases = _judged_cases(tier)
-    progress = Progress(stages=5 + len(cases) + len(_pairs(cases)))
-
-    comparison = _compare(progress, scene, runs / "digests")
-    outcomes = _judged(progress, cases, runs)
-    beside = _beside(progress, cases, runs)
-    shown = progress.run(scene, runs / SHOWN, Options(ranks=2, steps=STEPS[tier]), STEPS[tier], f"{SHOWN}, P=2")
-    with progress.stage("pictures and page"):
-        velocity_field(shown, out / "field.png")
-        slip_and_drag(shown, out / "slip_drag.png")
-        ledger = _ledger(shown)
-        page = jinja2.Environment(
-            loader=jinja2.FileSystemLoader(ROOT / "reports" / "templates"),
-            undefined=jinja2.StrictUndefined,
-            autoescape=True,
-        ).get_template("report.html.j2")
-        html = page.render(
-            tier=tier,
-            comparison=comparison,
-            digest_rows=_digest_rows(comparison),
-            outcomes=outcomes,
-            beside=beside,
-            record=shown.record,
-            samples=len(shown.series),
-            ledger=ledger,
-            provenance=_provenance(shown),
-            field=_embedded(out / "field.png"),
-            chart=_embedded(out / "slip_drag.png"),
-            shown=SHOWN,
-            steps=STEPS[tier],
-            compared_steps=COMPARED_STEPS,
-            compared_every=COMPARED_EVERY,
-        )
-        (out / "index.html").write_text(html)
-    holds = (
-        comparison.equal
-        and not any(row["defect"] for row in ledger)
-        and all(outcome.verdict == CORRECT for _, outcome in outcomes)
-    )
-    print("\n".join(comparison.lines))
-    for name, outcome in outcomes:
-        print(f"{name}: {outcome.line}")
+    cases = _cases(tier)
+    progress = Progress(stages=4 + sum(case.equivalence is not None for case in cases))
+    results = _judge_all(progress, cases, tier, runs)
+    shown = progress.run(find_case(SHOWN).file, runs / SHOWN / "shown", Options(ranks=2, steps=STEPS[tier]), STEPS[tier],
+                         f"{SHOWN}, P=2")
+    origin = provenance(shown)
+    entry = _results_json(tier, origin, results)
+    history = read_history(PUBLISHED / "history.json")
+    with progress.stage("pictures") as say:
+        figures: dict[str, CaseFigures] = {}
+        for result in results:
+            say(result.case.name)
+            figures[result.case.name] = case_figures(result, out)
+        suite = suite_figures(results, [*history, entry], out)
+        shown_pictures = shown_figures(shown, out)
+    with progress.stage("page"):
+        content = {
+            "tier": tier, "results": results, "figures": figures, "suite": suite, "shown_pictures": shown_pictures,
+            "shown": SHOWN, "steps": STEPS[tier], "record": shown.record, "ledger": _ledger(shown), "stored": _stored(),
+            "changes": changes(history, entry["errors"]), "history": history, "provenance": origin,
+            "checksums": reference_checksums(), "took": str(timedelta(seconds=round(time.monotonic() - started))),
+        }
+        write_page(content, out / "index.html")
+        write_summary(content, out / "summary.md")
+        (out / "results.json").write_text(json.dumps(entry, indent=1) + "\n")
+    if publish:
+        _publish(out, [suite["overview"].with_suffix(".png"), shown_pictures["field"]], entry)
+    holds = all(result.holds for result in results) and not any(row["defect"] for row in content["ledger"])
+    for result in results:
+        print("\n".join(f"{result.case.name}: {line}" for line in result.lines))
+    verdicts = [outcome.verdict for result in results for outcome in result.outcomes]
+    print(f"{verdicts.count(CORRECT)} of {len(verdicts)} observables CORRECT; took {content['took']}")
     print(f"report: {out / 'index.html'}: {'everything holds' if holds else 'SOMETHING DOES NOT HOLD'}")
     return 0 if holds else 1

@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from verification.case import Case, Level
+from verification.conservation import Conservation, conservation, defect_line, totals
 from verification.equivalence import Matrix, run_matrix
 from verification.judge import Outcome, beside, judge
 from verification.runner import Done, Job, cores, jobs_of, run_jobs
-from verification.solver import Options, Run
+from verification.solver import Options, Run, run
 
 Runs = dict[tuple[str, ...], Run]
 
@@ -38,10 +39,12 @@ class CaseResult:
     beside: tuple[tuple[str, Outcome], ...]
     exact: Exactness
     matrix: Matrix | None = None
+    faces: Conservation | None = None
 
     @property
     def holds(self) -> bool:
         exact = not self.exact.defects and (self.matrix is None or self.matrix.equal)
+        exact = exact and (self.faces is None or self.faces.exact)
         return exact and all(outcome.holds for outcome in self.outcomes)
 
     @property
@@ -54,26 +57,32 @@ class CaseResult:
         lines += [f"{label}: {outcome.line}" for label, outcome in self.beside]
         if self.matrix is not None:
             lines += self.matrix.lines
+        if self.faces is not None:
+            lines += self.faces.lines
         return [*lines, self.exact.line] if self.exact.runs else lines
 
 
 def exactness(runs: Runs) -> Exactness:
     samples, defects = 0, []
-    for run in runs.values():
-        series = run.series
-        samples += len(series)
-        for name, values in series.columns.items():
-            if name.startswith("momentum_defect") and any(value != "0" for value in values):
-                defects.append(f"{run.folder.name}: {name} at {sum(value != '0' for value in values)} samples")
-            if name == "fluid_particles" and len(set(values)) > 1:
-                defects.append(f"{run.folder.name}: the number of PPs changes")
+    for finished in runs.values():
+        momentum, particles = totals(finished)
+        samples += len(momentum)
+        for name, by_step in (("momentum - start - impulse", momentum), ("change of the number of PPs", particles)):
+            if any(by_step.values()):
+                defects.append(f"{finished.folder.name}: {defect_line(name, by_step)}")
     return Exactness(len(runs), samples, tuple(defects))
 
 
-def judged(case: Case, tier: str, runs: Runs, matrix: Matrix | None = None) -> CaseResult:
-    return CaseResult(
-        case, tier, runs, tuple(judge(case, tier, runs)), tuple(beside(case, runs)), exactness(runs), matrix
-    )
+def run_bits(case: Case, out: Path, say: Callable[[str], None]) -> tuple[Matrix, Conservation]:
+    """The equivalence matrix of a case, and the impulses over the faces between domains at every tenth step."""
+    matrix = run_matrix(case.file, case.equivalence, out / case.name / "matrix", say)
+    options = Options(ranks=4, steps=min(200, case.equivalence.steps), faces=True, overrides=("output.sample=10",))
+    return matrix, conservation(run(case.file, out / case.name / "faces", options))
+
+
+def judged(case: Case, tier: str, runs: Runs, bits: tuple[Matrix, Conservation] | None = None) -> CaseResult:
+    outcomes, others = tuple(judge(case, tier, runs)), tuple(beside(case, runs))
+    return CaseResult(case, tier, runs, outcomes, others, exactness(runs), *(bits or ()))
 
 
 def run_case(case: Case, tier: str, out: Path, ranks: int = 1, done: Done | None = None, workers: int | None = None,
@@ -87,14 +96,12 @@ def run_case(case: Case, tier: str, out: Path, ranks: int = 1, done: Done | None
 
     jobs = jobs_of(case, tier)
     runs = run_jobs(jobs, out, Options(ranks=ranks), workers or cores(), done or told)
-    matrix = None
-    if case.equivalence is not None:
-        matrix = run_matrix(case.file, case.equivalence, out / case.name / "matrix", say)
-    return judged(case, tier, {overrides: run for (_, overrides), run in runs.items()}, matrix)
+    bits = run_bits(case, out, say) if case.equivalence is not None else None
+    return judged(case, tier, {overrides: finished for (_, overrides), finished in runs.items()}, bits)
 
 
 def run_with(case: Case, out: Path, overrides: tuple[str, ...], ranks: int = 1) -> CaseResult:
     """The scene alone with overrides of the user: no levels, nothing varied, so the goals alone decide."""
     alone = replace(case, levels=(Level(overrides, "quick"),), vary=(), beside=(), equivalence=None, stalls="")
     runs = run_jobs([Job(alone, overrides)], out, Options(ranks=ranks), 1)
-    return judged(alone, "quick", {overrides: run for (_, overrides), run in runs.items()})
+    return judged(alone, "quick", {overrides: finished for (_, overrides), finished in runs.items()})

@@ -47,6 +47,9 @@ class Options:
     overrides: tuple[str, ...] = ()
     domains: str | None = None
     threads: int | None = None
+    rebalance: int | None = None
+    faces: bool = False  # write faces.csv; of the parallel solver
+    trace: str | None = None  # "ID@STEP": write trace.csv
     resume: Path | None = None
     neighbours: str | None = None  # search of the reference: "cells" or "all-pairs"
     build: Path | None = None
@@ -60,6 +63,8 @@ class Options:
             parts.append(f"domains {self.domains}")
         if self.threads:
             parts.append(f"{self.threads} threads a rank")
+        if self.rebalance:
+            parts.append(f"rebalanced every {self.rebalance} steps")
         if self.resume:
             parts.append("resumed")
         if self.build:
@@ -75,11 +80,15 @@ class Options:
             ("--steps", self.steps),
             ("--domains", self.domains),
             ("--threads", self.threads),
+            ("--rebalance", self.rebalance),
+            ("--trace", self.trace),
             ("--resume", self.resume),
             ("--neighbours", self.neighbours),
         ):
             if value is not None:
                 line += [flag, str(value)]
+        if self.faces:
+            line.append("--faces")
         for override in self.overrides:
             line += ["--set", override]
         return line
@@ -126,8 +135,8 @@ def read_points(path: Path) -> dict[str, np.ndarray]:
         return {"points": group["Points"][:]} | {name: data[:] for name, data in group["PointData"].items()}
 
 
-def snapshot_time(path: Path) -> float:
-    """In the scene's units."""
+def read_time(path: Path) -> float:
+    """Of a VTKHDF file, scene units."""
     with h5py.File(path) as file:
         return float(file["VTKHDF/FieldData/TimeValue"][0])
 

@@ -9,7 +9,7 @@ from verification.curve import Chart, Curve
 from verification.fits import extrapolate, values_at
 from verification.histories import settling
 from verification.observables import SETTLED, Measured
-from verification.solver import Run, snapshot_time
+from verification.solver import Run, read_time
 
 RADIUS = 3.0  # of the fit, in spacings
 LATE = 0.8  # of the run: later snapshots count
@@ -22,7 +22,7 @@ def reynolds(run: Run) -> int:
 
 
 def _late_snapshots(run: Run) -> list[int]:
-    times = [snapshot_time(path) for path in run.snapshots()]
+    times = [read_time(path) for path in run.snapshots()]
     return [i for i, time in enumerate(times) if time > LATE * times[-1]]
 
 

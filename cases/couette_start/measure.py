@@ -7,7 +7,7 @@ import numpy as np
 
 from verification.curve import Chart, Curve
 from verification.observables import Measured
-from verification.solver import Run, snapshot_time
+from verification.solver import Run, read_time
 
 TIMES = (0.05, 0.1, 0.3, 1.0)  # nu t / H^2
 
@@ -39,7 +39,7 @@ def profile(run: Run, time: float) -> Profile:
     """Of the snapshot nearest to a time, which is compared at the time that it has."""
     fluid, moving = run.scene["fluid"], run.scene["body"][0]
     viscosity, width = fluid["viscosity"] / fluid["density"], moving["position"]
-    times = np.array([snapshot_time(path) for path in run.snapshots()]) * viscosity / width**2
+    times = np.array([read_time(path) for path in run.snapshots()]) * viscosity / width**2
     nearest = int(np.argmin(np.abs(times - time)))
     particles = run.fluid(nearest)
     return Profile(float(times[nearest]), particles["points"][:, 1] / width,

@@ -16,8 +16,18 @@ namespace mappm {
 namespace {
 
 struct DomainOptions {
-  std::string grid;  // "2x4"; empty: slabs
+  std::string grid;    // "2x4"; empty: slabs
+  bool faces = false;  // the ledger of the faces, at every sample
   ParallelOptions engine;
+
+  /// What differs from the defaults, as it is given on the command line.
+  std::string repeated() const {
+    std::string text = grid.empty() ? "" : " --domains " + grid;
+    if (engine.threads != ParallelOptions{}.threads) text += " --threads " + std::to_string(engine.threads);
+    if (engine.rebalance != ParallelOptions{}.rebalance) text += " --rebalance " + std::to_string(engine.rebalance);
+    if (faces) text += " --faces";
+    return text;
+  }
 };
 
 template <int D>
@@ -27,13 +37,17 @@ void run_scene(const Scene& scene, const RunOptions& options, const DomainOption
   const Domains<D> domains =
       together(communicator, [&] { return make_domains<D>(built.model, communicator.size(), domain_options.grid); });
   Start<D> start = start_run<D>(scene, built.model, domains.region(communicator.rank()), options, communicator);
-  ParallelEngine<D> engine(built.model, domains, communicator, std::move(start.state), domain_options.engine);
+  ParallelOptions engine_options = domain_options.engine;
+  if (domain_options.faces) engine_options.faces = scene.output.sample;
+  ParallelEngine<D> engine(built.model, domains, communicator, std::move(start.state), engine_options);
 
   RunSetup<D> setup{scene, built.model, communicator, options, start, "mappm", built.warnings};
   setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
+  setup.program_options = domain_options.repeated();
   const Vec<D, int> grid = domains.grid();
   setup.domains.assign(grid.component, grid.component + D);
   setup.threads = domain_options.engine.threads;
+  setup.faces = domain_options.faces;
   RunLoop<D, ParallelEngine<D>>(setup, engine).run();
 }
 
@@ -54,6 +68,8 @@ int main(int argc, char** argv) try {
         .add_option("--rebalance", domain_options.engine.rebalance,
                     "steps between moves of the domain borders to the particle load (default: at start only)")
         ->check(not_negative);
+    command.add_flag("--faces", domain_options.faces,
+                     "write to faces.csv, at every sample, the impulse that each domain received from each other");
   };
   return run_command(argc, argv, communicator, "mappm", add_options, [&](const RunOptions& options) {
     const Scene scene = together(communicator, [&] { return read_scene(options.scene, options.overrides); });

@@ -23,6 +23,7 @@ void run_scene(const Scene& scene, const RunOptions& options, Neighbours neighbo
 
   RunSetup<D> setup{scene, built.model, group, options, start, "mappm-reference", built.warnings};
   setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
+  if (neighbours == Neighbours::all_pairs) setup.program_options = " --neighbours all-pairs";
   RunLoop<D, SerialEngine<D>>(setup, engine).run();
 }
 

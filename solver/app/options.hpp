@@ -10,6 +10,11 @@
 
 namespace mappm {
 
+/// --trace ID@STEP: what each partner gives to PP `particle` in the step from `step` to `step + 1`.
+struct TraceRequest {
+  std::uint64_t particle = 0, step = 0;
+};
+
 struct RunOptions {
   std::string scene;                   // path of the scene
   std::vector<std::string> overrides;  // KEY=VALUE
@@ -17,18 +22,18 @@ struct RunOptions {
   std::string out;                     // output folder; by default out/<scene name>
   std::string resume;                  // checkpoint, or folder; empty: from the start
   bool quiet = false;
+  std::optional<TraceRequest> trace;
 
-  /// The options that a resumed run must be given again.
-  std::string repeated() const {
-    std::string text;
-    for (const std::string& change : overrides) text += " --set '" + change + "'";
-    return out.empty() ? text : text + " --out " + out;
-  }
+  /// What a resumed run must be given again, to be pasted into a shell.
+  std::string repeated() const;
 
   std::filesystem::path output_folder(const std::string& scene_name) const {
     return out.empty() ? std::filesystem::path("out") / scene_name : std::filesystem::path(out);
   }
 };
+
+/// A word as a shell reads it back: in quotes where it needs them.
+std::string shell_word(const std::string& word);
 
 /// Numbers without sign read "-5" as a very large one; this refuses it.
 extern const CLI::Validator not_negative;

@@ -17,11 +17,13 @@
 #include "app/start.hpp"
 #include "output/checkpoint_folder.hpp"
 #include "output/durable_file.hpp"
+#include "output/face_series.hpp"
 #include "output/progress.hpp"
 #include "output/run_record.hpp"
 #include "output/series.hpp"
 #include "output/snapshot.hpp"
 #include "output/solid_series.hpp"
+#include "output/trace_file.hpp"
 #include "particles/engine.hpp"
 
 namespace mappm {
@@ -36,8 +38,10 @@ struct RunSetup {
   const Start<D>& start;
   std::string program;
   std::vector<std::string> warnings;
-  std::vector<int> domains = {};  // an entry an axis; empty for the reference
+  std::string program_options = {};  // those that only this program has, as given: " --threads 2"
+  std::vector<int> domains = {};     // an entry an axis; empty for the reference
   int threads = 1;
+  bool faces = false;  // write faces.csv; for engines that keep a ledger of faces
 };
 
 /// Wall time in seconds, added up over several stretches.
@@ -76,8 +80,10 @@ class RunLoop {
     try {
       if (!advance()) {
         state = "stopped";
-        message = fmt::format("resume with: {} run {}{} --resume {}", setup_.program, setup_.options.scene,
-                              setup_.options.repeated(), saved_.string());
+        const int ranks = setup_.group.size();
+        message =
+            fmt::format("resume with: {}{} run {}{} --resume {}", ranks > 1 ? fmt::format("mpirun -np {} ", ranks) : "",
+                        setup_.program, setup_.options.repeated(), setup_.program_options, shell_word(saved_.string()));
       }
       remember(measure(setup_.model, engine_.state(), setup_.group));
       write_record(state, message);
@@ -101,6 +107,8 @@ class RunLoop {
   }
 
   void begin();
+  void check_trace() const;
+  void make_step();
   bool advance();
   bool outputs_due() const;
   void write_outputs();
@@ -109,6 +117,7 @@ class RunLoop {
   void remember(const Totals<D>& totals);
   void write_record(const std::string& state, const std::string& message);
   void write_record_of_failure(const std::string& state, const std::string& message);
+  std::vector<std::vector<double>> borders_in_scene_units() const;
   void say_end(const std::string& message);
 
   const RunSetup<D>& setup_;
@@ -118,6 +127,7 @@ class RunLoop {
   Poll poll_;
   std::optional<Series<D>> series_;
   std::optional<SolidSeries<D>> solid_series_;
+  std::optional<FaceSeries<D>> face_series_;
   std::optional<Progress> progress_;
   RunRecord record_;
   StopWatch stepping_, output_;
@@ -128,7 +138,9 @@ class RunLoop {
 template <int D, class E>
 requires Engine<E, D>
 void RunLoop<D, E>::begin() {
-  const auto& [scene, model, group, options, start, program, warnings, domains, threads] = setup_;
+  const auto& [scene, model, group, options, start, program, warnings, program_options, domains, threads, faces] =
+      setup_;
+  check_trace();
   on_first(group, [&] { make_folder(folder_); });
   record_.program = program;
   record_.scene_file = scene.file;
@@ -146,6 +158,7 @@ void RunLoop<D, E>::begin() {
   const UnitNames units = scene.units == Units::si ? si_unit_names(D) : UnitNames{};
   series_.emplace(folder_, model, units, group, start.resumed_step);
   if (scene.output.solids) solid_series_.emplace(folder_, model, units, group, start.resumed_step);
+  if (faces) face_series_.emplace(folder_, group, start.resumed_step);
   remember(measure(model, engine_.state(), group));
   write_record("running", "");
   say_on_first([&] {
@@ -165,7 +178,7 @@ requires Engine<E, D>
 bool RunLoop<D, E>::advance() {
   if (!setup_.start.resumed_step.has_value()) write_outputs();
   while (step() < last_step_) {
-    stepping_.time([&] { engine_.step(); });
+    make_step();
     poll_.note(step(), engine_.range_error());
     if (!poll_.due(step()) && !outputs_due()) continue;
     const double steps_done = static_cast<double>(step() - first_step_);
@@ -178,6 +191,27 @@ bool RunLoop<D, E>::advance() {
     }
   }
   return true;
+}
+
+template <int D, class E>
+requires Engine<E, D>
+void RunLoop<D, E>::make_step() {
+  const auto& trace = setup_.options.trace;
+  const bool traced = trace.has_value() && trace->step == step();
+  if (traced) engine_.trace_next_step(trace->particle);
+  stepping_.time([&] { engine_.step(); });
+  if (traced) write_trace(folder_, engine_.last_trace(), setup_.model.terms.transport, trace->particle, setup_.group);
+}
+
+/// A trace of a step that the run does not make would be a file that never comes.
+template <int D, class E>
+requires Engine<E, D>
+void RunLoop<D, E>::check_trace() const {
+  const auto& trace = setup_.options.trace;
+  if (!trace.has_value() || (trace->step >= first_step_ && trace->step < last_step_)) return;
+  throw InputError("command line", "--trace", fmt::format("{}@{}", trace->particle, trace->step),
+                   fmt::format("this run goes from step {} to {}; choose a step from {} to {}, or change --steps",
+                               first_step_, last_step_, first_step_, std::max(first_step_ + 1, last_step_) - 1));
 }
 
 template <int D, class E>
@@ -208,6 +242,8 @@ void RunLoop<D, E>::sample() {
   const Totals<D> totals = measure(setup_.model, state, setup_.group);
   series_->add(totals, state.start_momentum, sampled_step_);
   if (solid_series_.has_value()) solid_series_->add(state, sampled_step_);
+  if constexpr (requires { engine_.faces(); })
+    if (face_series_.has_value()) face_series_->add(state.step, engine_.faces());
   for (Solid<D>& solid : state.solids) solid.sampled_impulse = solid.fluid_impulse;
   sampled_step_ = state.step;
   remember(totals);
@@ -253,9 +289,22 @@ void RunLoop<D, E>::write_record(const std::string& state, const std::string& me
   record_.wall_seconds = phases;
   const double done = static_cast<double>(record_.step - first_step_);
   record_.rate = seconds.back() > 0.0 ? done * static_cast<double>(record_.particles) / seconds.back() : 0.0;
+  if constexpr (requires { engine_.domains(); }) record_.borders = borders_in_scene_units();
   record_.state = state;
   record_.message = message;
   on_first(setup_.group, [&] { write_run_record(folder_ / "run.json", record_); });
+}
+
+template <int D, class E>
+requires Engine<E, D> std::vector<std::vector<double>> RunLoop<D, E>::borders_in_scene_units()
+const {
+  std::vector<std::vector<double>> borders;
+  for (int axis = 0; axis < D; ++axis) {
+    const double unit = setup_.model.pair.length[axis] * setup_.model.units.length;
+    auto& along = borders.emplace_back();
+    for (const double cut : engine_.domains().cuts()[static_cast<std::size_t>(axis)]) along.push_back(cut * unit);
+  }
+  return borders;
 }
 
 /// The state may hold nonsense: the figures stay those of the last sample. A disk that is full for a checkpoint may be

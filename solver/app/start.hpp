@@ -1,6 +1,8 @@
 // Where a run begins: at step 0 of its scene, or at a checkpoint.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -9,6 +11,7 @@
 #include <vector>
 
 #include "app/options.hpp"
+#include "base/error.hpp"
 #include "base/group.hpp"
 #include "output/checkpoint_folder.hpp"
 #include "output/together.hpp"
@@ -52,6 +55,9 @@ std::uint64_t last_step(const Scene& scene, const Model<D>& model, const RunOpti
   if (scene.run.steps > 0) return scene.run.relax + scene.run.steps;
   // A duration of a whole number of steps may come out a rounding error above it.
   const double steps = scene.run.duration / (model.dt * model.units.time());
+  if (steps > 0x1p62)
+    throw InputError(scene.file, "run.duration", fmt::format("{}", scene.run.duration),
+                     fmt::format("is {:.3g} steps, more than can be counted; shorten it", steps));
   return scene.run.relax + static_cast<std::uint64_t>(std::ceil(steps * (1.0 - 1e-12)));
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "output/file_seal.hpp"
 #include "output/hdf5_file.hpp"
 #include "output/scene_identity.hpp"
 #include "output/solid_words.hpp"
@@ -16,7 +17,7 @@ namespace mappm {
 namespace {
 
 constexpr const char* format_name = "MaPPM checkpoint";
-constexpr std::uint64_t format_version = 1;
+constexpr std::uint64_t format_version = 2;
 constexpr std::uint64_t slice_rows = 1 << 18;        // PPs read at a time
 constexpr std::uint64_t solid_slice_rows = 1 << 10;  // solids read at a time
 
@@ -210,6 +211,7 @@ void write_checkpoint(const std::string& path, const std::string& scene_text, co
     file.rows(field_name<D>(field), counts(state.fluid.field[field], field_quantum<D>(field)), 0);
   write_solids(state.solids, file);
   file.close();
+  seal_file(path, group);
 }
 
 template <int D>
@@ -217,6 +219,7 @@ Checkpoint<D> read_checkpoint(const std::string& path, const std::string& scene_
                               const Region<D>& region, const Group& group) {
   Vec<D, Int128> outside_impulse;
   std::array<std::uint64_t, 2> stored{};
+  check_seal(path, group);
   Checkpoint<D> checkpoint = together(group, [&] {
     const Hdf5Reader file(path);
     check_header(file, path, scene_text);

@@ -1,5 +1,7 @@
 // The whole integer state in one HDF5 file, written and read by any number of processes.
 //
+// A seal follows the HDF5 file (file_seal.hpp); HDF5 itself does not mind it.
+//
 //   /            attributes: format, version, dimension, scene_hash, step, sampled_step, digest, ledger_hash,
 //                start_momentum, outside_impulse (low and high word an axis)
 //   /scene       the declaration of the scene, a byte a letter

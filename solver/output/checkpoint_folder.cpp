@@ -91,8 +91,7 @@ fs::path save_checkpoint(const fs::path& folder, const std::string& scene_text, 
     on_first(group, [&] { publish(path); });
   } catch (const InputError& error) {
     const std::vector<fs::path> kept = agreed_list(folder, group);
-    std::error_code ignored;
-    if (group.is_first()) fs::remove(partial_name(path), ignored);
+    if (group.is_first()) discard_partial(path);
     throw InputError(error.what() +
                      (kept.empty() ? "" : "; the last checkpoint is kept: --resume " + kept[0].string()));
   }

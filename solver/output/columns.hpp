@@ -12,13 +12,13 @@ namespace mappm {
 
 /// Names of the units in which a scene is given. All empty for a dimensionless one.
 struct UnitNames {
-  std::string time, length, velocity, angular_velocity, force, energy;
+  std::string time, length, velocity, angular_velocity, force, energy, angular_momentum;
 };
 
-/// SI; in the plane, forces and energies are those per metre of depth.
+/// SI; in the plane, forces, energies and angular momenta are those per metre of depth.
 inline UnitNames si_unit_names(int dimension) {
-  if (dimension == 2) return {"s", "m", "m/s", "rad/s", "N/m", "J/m"};
-  return {"s", "m", "m/s", "rad/s", "N", "J"};
+  if (dimension == 2) return {"s", "m", "m/s", "rad/s", "N/m", "J/m", "kg m/s"};
+  return {"s", "m", "m/s", "rad/s", "N", "J", "kg m2/s"};
 }
 
 class Columns {

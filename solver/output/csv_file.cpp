@@ -32,8 +32,15 @@ CsvFile::CsvFile(std::filesystem::path path, const std::string& header, std::opt
 }
 
 void CsvFile::add(const std::string& rows) {
+  const std::uintmax_t whole = std::filesystem::file_size(path_);
   file_ << rows << std::flush;
-  check(file_);
+  if (file_) return;
+  const int cause = errno;
+  file_.clear();
+  file_.close();
+  std::error_code ignored;
+  std::filesystem::resize_file(path_, whole, ignored);  // no row in pieces
+  refuse(cause);
 }
 
 void CsvFile::keep_until(std::uint64_t step, const std::string& header) {
@@ -55,8 +62,11 @@ void CsvFile::keep_until(std::uint64_t step, const std::string& header) {
 }
 
 void CsvFile::check(const std::ostream& stream) const {
-  if (stream) return;
-  throw InputError(path_.string() + ": cannot be written: " + std::strerror(errno) +
+  if (!stream) refuse(errno);
+}
+
+void CsvFile::refuse(int cause) const {
+  throw InputError(path_.string() + ": cannot be written: " + std::strerror(cause) +
                    "; free space, or choose another folder with --out");
 }
 

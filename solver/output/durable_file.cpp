@@ -36,6 +36,10 @@ class Descriptor {
       done += static_cast<std::size_t>(written);
     }
   }
+  void reserve(std::uint64_t first, std::uint64_t count) {
+    const int done = ::fallocate(number_, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(first), static_cast<off_t>(count));
+    if (done != 0 && (errno == ENOSPC || errno == EDQUOT || errno == EFBIG)) refuse(path_, errno);
+  }
   void sync_and_close() {
     if (::fsync(number_) != 0) refuse(path_, errno);
     const int closed = ::close(number_);
@@ -69,10 +73,24 @@ void write_durably(const std::filesystem::path& path, const std::string& text) {
     file.write(text);
     publish(path);
   } catch (const InputError&) {
-    std::error_code ignored;
-    std::filesystem::remove(partial, ignored);
+    discard_partial(path);
     throw;
   }
+}
+
+void discard_partial(const std::filesystem::path& path) {
+  const std::filesystem::path partial = partial_name(path);
+  std::error_code ignored;
+  std::filesystem::resize_file(partial, 0, ignored);
+  std::filesystem::remove(partial, ignored);
+}
+
+void reserve_room(const std::filesystem::path& path, std::uint64_t first, std::uint64_t end) {
+  if (end > first) Descriptor(path, O_WRONLY).reserve(first, end - first);
+}
+
+void append(const std::filesystem::path& path, const std::string& text) {
+  Descriptor(path, O_WRONLY | O_APPEND).write(text);
 }
 
 void make_folder(const std::filesystem::path& folder) {

@@ -1,9 +1,11 @@
 #include "output/hdf5_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "output/durable_file.hpp"
 #include "output/together.hpp"
 
 namespace mappm {
@@ -26,6 +28,8 @@ hid_t hdf5_type<std::uint8_t>() {
 }
 
 namespace {
+
+constexpr std::uint64_t beside_rows = 1 << 16;  // bytes; headers of the objects that follow a data set
 
 /// Messages go into exceptions, not to the terminal; and a file that could not be completed is not tried again at the
 /// end of the program.
@@ -99,6 +103,18 @@ Hdf5Writer::Hdf5Writer(const std::string& path, const Group& group) : path_(path
   const Hdf5Handle access(group.hdf5_file_access(), H5Pclose);
   together(group,
            [&] { file_ = checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose, path); });
+  reserve(0);
+}
+
+Hdf5Writer::~Hdf5Writer() {
+  if (group_.size() > 1) file_.abandon();  // without effect after close()
+}
+
+/// Room for the bytes before `end` and for what the library keeps beside the rows.
+void Hdf5Writer::reserve(std::uint64_t end) {
+  if (group_.size() == 1) return;
+  on_first(group_, [&] { reserve_room(path_, reserved_, end + beside_rows); });
+  reserved_ = std::max(reserved_, end + beside_rows);
 }
 
 void Hdf5Writer::make_group(const std::string& name) {
@@ -144,6 +160,7 @@ void Hdf5Writer::rows(const std::string& name, const std::vector<T>& values, std
         checked(H5Dcreate2(file_.id(), name.c_str(), hdf5_type<T>(), space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                 H5Dclose, path_);
   });
+  if (all[0] > 0) reserve(H5Dget_offset(data.id()) + all[0] * (width == 0 ? 1 : width) * sizeof(T));
   together(group_, [&] {
     if (all[0] == 0) return;  // a data set without rows has no place in the file
     const Hdf5Handle in_file = row_space(all[0], width);
@@ -177,8 +194,10 @@ std::string Hdf5Reader::text_attribute(const std::string& where, const std::stri
                              H5Aclose);
   if (attribute.id() < 0) refuse("attribute '" + name + "' is missing");
   const Hdf5Handle type(H5Aget_type(attribute.id()), H5Tclose);
-  if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) != 0)
-    refuse("attribute '" + name + "' is no text");
+  const Hdf5Handle space(H5Aget_space(attribute.id()), H5Sclose);
+  if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) != 0 ||
+      H5Sget_simple_extent_npoints(space.id()) != 1)
+    refuse("attribute '" + name + "' is not one text");
   std::string text(H5Tget_size(type.id()), '\0');
   if (H5Aread(attribute.id(), type.id(), text.data()) < 0) refuse(last_cause());
   while (!text.empty() && text.back() == '\0') text.pop_back();

@@ -28,6 +28,8 @@ class Hdf5Handle {
     if (id_ > 0) close_(id_);
   }
   hid_t id() const { return id_; }
+  /// Forgets the identifier without releasing it.
+  void abandon() { id_ = 0; }
   /// Releases now; whether that went well.
   bool close() { return id_ <= 0 || close_(std::exchange(id_, 0)) >= 0; }
 
@@ -42,6 +44,10 @@ hid_t hdf5_type();
 /// A file written by all processes of a group together. Every method is collective and throws InputError on all of
 /// them with the cause (a full disk, a missing permission) if it failed on any.
 ///
+/// The disk is asked for the room before anything is written to it, where it can promise any. For a process whose write
+/// failed drops out of what HDF5 does together, and the others wait for it for ever: in H5Fclose too, so that a file
+/// shared by several processes is left unclosed once something failed.
+///
 /// Rows are written by each process for itself (independent transfer): its part of a data set is one stretch of the
 /// file, so nothing is gained by collecting parts first, and where a disk is full, Open MPI's collective writing leaves
 /// some processes waiting for ever.
@@ -49,6 +55,9 @@ class Hdf5Writer {
  public:
   /// Makes the file, replacing one of that name.
   Hdf5Writer(const std::string& path, const Group& group);
+  Hdf5Writer(const Hdf5Writer&) = delete;
+  Hdf5Writer& operator=(const Hdf5Writer&) = delete;
+  ~Hdf5Writer();
 
   void make_group(const std::string& name);
   /// Attributes of the group `where`; the same value on every process.
@@ -63,9 +72,12 @@ class Hdf5Writer {
   void close();
 
  private:
+  void reserve(std::uint64_t end);
+
   std::string path_;
   const Group& group_;
   Hdf5Handle file_;
+  std::uint64_t reserved_ = 0;  // bytes from the start for which the disk has room
 };
 
 /// A file read by one process for itself. Throws InputError naming the file and what is missing.

@@ -71,6 +71,7 @@ std::string run_record_text(const RunRecord& record) {
                       {"iota", record.iota}};
   json["ranks"] = record.ranks;
   json["domains"] = record.domains;
+  json["borders"] = record.borders;
   json["threads"] = record.threads;
   json["particles"] = record.particles;
   json["solids"] = record.solids;

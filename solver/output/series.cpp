@@ -48,10 +48,17 @@ Columns series_columns(const Model<D>& model, const UnitNames& units, const Tota
 
   const double energy = scale.mass * scale.velocity * scale.velocity * energy_quantum;
   columns.add("fluid_energy", units.energy, static_cast<double>(totals.fluid_energy) * energy);
+  columns.add("internal_energy", units.energy, static_cast<double>(totals.internal_energy) * energy);
   if (model.terms.solids) {
     columns.add("solid_energy", units.energy, static_cast<double>(totals.solid_energy) * energy);
     columns.add("spin_energy", units.energy, static_cast<double>(totals.spin_energy) * energy);
   }
+  AngularVec<D, double> angular_momentum;
+  const double angular = scale.mass * scale.velocity * scale.length * angular_quantum;
+  for (int k = 0; k < angular_components<D>; ++k)
+    angular_momentum[k] = static_cast<double>(totals.angular_momentum[k]) * angular;
+  columns.add("angular_momentum", units.angular_momentum, angular_momentum);
+  columns.add("fluid_particles", "", static_cast<std::uint64_t>(totals.fluid_count));
   columns.add("lowest_density_ratio", "", totals.lowest_density / model.rest_density);
   columns.add("highest_density_ratio", "", totals.highest_density / model.rest_density);
   columns.add("momentum", "", totals.momentum);

@@ -16,8 +16,10 @@ namespace mappm {
 /// The row of a sample. Columns: step, time; mean velocity of the PPs; superficial velocity (sum of PP velocities times
 /// their volume at rest, over the volume of the box); where the scene has solids the mean velocity of the SPs that are
 /// not fixed, slip (SPs minus PPs), drag (mean force of the fluid on an SP since the sample before), force of the fluid
-/// on all walls; kinetic energies; lowest and highest density over rho0; momentum ledger (iota: total, impulse from
-/// outside, defect, which is always 0); digest. sampled_step: step of the sample before.
+/// on all walls; kinetic energy of the PPs, their energy of compression,
+/// kinetic energies of the solids; angular momentum about the middle of the box (where particles cross its border it
+/// jumps: positions are those in the box); number of PPs; lowest and highest density over rho0; momentum ledger (iota:
+/// total, impulse from outside, defect, which is always 0); digest. sampled_step: step of the sample before.
 template <int D>
 Columns series_columns(const Model<D>& model, const UnitNames& units, const Totals<D>& totals,
                        const Vec<D, Int128>& start_momentum, std::uint64_t sampled_step);

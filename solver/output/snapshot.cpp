@@ -180,8 +180,7 @@ void write_points(const std::filesystem::path& path, const Group& group, Fill&& 
   try {
     fill();
   } catch (const InputError&) {
-    std::error_code ignored;
-    if (group.is_first()) std::filesystem::remove(partial_name(path), ignored);
+    if (group.is_first()) discard_partial(path);
     throw;
   }
 }

@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "physics/state_equation.hpp"
+
 namespace mappm {
 
 namespace {
@@ -24,26 +26,50 @@ void visit_sums(Totals<D>& totals, Visit&& visit) {
   visit(totals.fluid_energy);
   visit(totals.solid_energy);
   visit(totals.spin_energy);
+  visit(totals.internal_energy);
+  for (Int128& component : totals.angular_momentum.component) visit(component);
   visit(totals.digest_sum);
 }
 
+/// Place relative to the middle of the box, rcut; the same for a particle and its periodic images.
 template <int D>
-void add_fluid(const FluidParticles<D>& fluid, Totals<D>& totals) {
+Vec<D, double> from_middle(const Model<D>& model, const Vec<D, double>& x) {
+  Vec<D, double> place;
+  for (int axis = 0; axis < D; ++axis)
+    place[axis] = (wrap_position(x[axis]) - 0.5 * box_quanta) * model.pair.length[axis];
+  return place;
+}
+
+/// Angular momentum about the middle of the box of a momentum (PP mass c) at x.
+template <int D>
+AngularVec<D, Int128> orbital(const Model<D>& model, const Vec<D, double>& x, const Vec<D, double>& momentum) {
+  const AngularVec<D, double> value = cross<D, double>(from_middle(model, x), momentum);
+  AngularVec<D, Int128> result;
+  for (int k = 0; k < angular_components<D>; ++k) result[k] = to_fixed_wide(value[k] / angular_quantum);
+  return result;
+}
+
+template <int D>
+void add_fluid(const Model<D>& model, const FluidParticles<D>& fluid, Totals<D>& totals) {
   totals.fluid_count = static_cast<Int128>(fluid.size());
   for (std::size_t i = 0; i < fluid.size(); ++i) {
-    Vec<D, double> v;
+    Vec<D, double> x, v;
     for (int axis = 0; axis < D; ++axis) {
+      x[axis] = fluid.x(axis)[i];
       v[axis] = fluid.v(axis)[i];
       totals.fluid_momentum[axis] += static_cast<std::int64_t>(v[axis] / velocity_quantum);
     }
     totals.fluid_energy += to_fixed_wide(0.5 * dot(v, v) / energy_quantum);
+    const double compression = internal_energy(fluid.density()[i], model.rest_density, 1.0, model.background);
+    totals.internal_energy += to_fixed_wide(compression / energy_quantum);
+    totals.angular_momentum += orbital(model, x, v);
     totals.lowest_density = std::fmin(totals.lowest_density, fluid.density()[i]);
     totals.highest_density = std::fmax(totals.highest_density, fluid.density()[i]);
   }
 }
 
 template <int D>
-void add_solid(const Solid<D>& solid, const Shape<D>& shape, Totals<D>& totals) {
+void add_solid(const Model<D>& model, const Solid<D>& solid, const Shape<D>& shape, Totals<D>& totals) {
   totals.frozen_count += static_cast<Int128>(solid.density.size());
   const Vec<D, Int128> impulse = solid.fluid_impulse - solid.sampled_impulse;
   if (is_wall_piece(shape)) {
@@ -58,6 +84,10 @@ void add_solid(const Solid<D>& solid, const Shape<D>& shape, Totals<D>& totals) 
   for (int axis = 0; axis < D; ++axis)
     totals.mobile_velocity[axis] += to_fixed_wide(velocity.linear[axis] / mean_velocity_quantum);
   totals.solid_energy += to_fixed_wide(0.5 * shape.mass * dot(velocity.linear, velocity.linear) / energy_quantum);
+  Vec<D, double> momentum;
+  for (int axis = 0; axis < D; ++axis) momentum[axis] = static_cast<double>(solid.momentum[axis]) * velocity_quantum;
+  constexpr Int128 quanta = static_cast<Int128>(velocity_quantum / angular_quantum);
+  totals.angular_momentum += orbital(model, solid.x, momentum) + quanta * solid.angular_momentum;
   AngularVec<D, double> angular_momentum;
   for (int k = 0; k < angular_components<D>; ++k)
     angular_momentum[k] = static_cast<double>(solid.angular_momentum[k]) * velocity_quantum;
@@ -71,8 +101,8 @@ Totals<D> measure(const Model<D>& model, const State<D>& state, const Group& gro
   Totals<D> totals;
   totals.lowest_density = std::numeric_limits<double>::infinity();
   totals.highest_density = -std::numeric_limits<double>::infinity();
-  add_fluid(state.fluid, totals);
-  for (const Solid<D>& solid : state.solids) add_solid(solid, model.shapes[solid.shape], totals);
+  add_fluid(model, state.fluid, totals);
+  for (const Solid<D>& solid : state.solids) add_solid(model, solid, model.shapes[solid.shape], totals);
   totals.momentum = momentum_share(state);
   totals.outside_impulse = state.outside_impulse;
   totals.digest_sum = static_cast<Int128>(digest_share(state));

@@ -17,6 +17,10 @@ inline constexpr double mean_velocity_quantum = 0x1p-70;
 /// Quantum in which energies are summed, PP mass c^2. 2^46 such energies of 1 fit in the sum.
 inline constexpr double energy_quantum = 0x1p-80;
 
+/// Quantum in which angular momenta about the middle of the box are summed, PP mass c rcut. A spin is a whole number of
+/// them.
+inline constexpr double angular_quantum = 0x1p-70;
+
 /// "SPs" are the solids other than pieces of walls; "mobile" ones are those that are not fixed.
 template <int D>
 struct Totals {
@@ -26,7 +30,9 @@ struct Totals {
   Vec<D, Int128> mobile_velocity{};                            // mean_velocity_quantum
   Vec<D, Int128> sp_impulse{}, wall_impulse{};                 // from the fluid since the last sample, iota
   Int128 fluid_energy = 0, solid_energy = 0, spin_energy = 0;  // energy_quantum
-  Vec<D, Int128> momentum{}, outside_impulse{};                // of PPs and solids; iota
+  Int128 internal_energy = 0;                                  // of the PPs, by compression; energy_quantum
+  AngularVec<D, Int128> angular_momentum{};      // of PPs and free or moving solids, spin included; angular_quantum
+  Vec<D, Int128> momentum{}, outside_impulse{};  // of PPs and solids; iota
   Int128 digest_sum = 0;
   double lowest_density = 0.0, highest_density = 0.0;  // over PPs, PPs per rcut^D; NaN where there are none
 

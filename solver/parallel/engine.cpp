@@ -107,6 +107,7 @@ void ParallelEngine<D>::step() {
   watch.end(sort_phase);
   pass_.sum(state_.fluid, grid_, frozen_, frozen_sums_);
   watch.end(pair_phase);
+  explain_pairs();
   if (model_.terms.solids) {
     sum_frozen_densities();
     std::vector<HomeReport<D>> reports = collect_reports();
@@ -135,6 +136,25 @@ void ParallelEngine<D>::place_solids() {
   };
   for (const Solid<D>& solid : state_.solids) add(solid);
   for (const Solid<D>& solid : copies_) add(solid);
+}
+
+/// What the pass summed, taken apart where that was asked for: the ledger of the faces, the trace of one PP.
+template <int D>
+void ParallelEngine<D>::explain_pairs() {
+  faces_.clear();
+  if (options_.faces > 0 && (state_.step + 1) % options_.faces == 0) {
+    const FaceLedger<D> ledger(model_, domains_, halo_->region(), grid_);
+    faces_ = ledger.faces(state_.fluid, frozen_);
+    faces_.push_back({all_partners, ledger.received(state_.fluid, pass_, frozen_, frozen_sums_)});
+  }
+  trace_.reset();
+  if (!traced_particle_.has_value()) return;
+  if (const auto partners = pass_.trace(state_.fluid, grid_, frozen_, *traced_particle_)) {
+    trace_ = StepTrace<D>{state_.step, *traced_particle_, *partners};
+    for (PartnerTrace<D>& partner : trace_->partners)
+      if (partner.frozen) partner.id = bodies_[partner.id].solid->id;
+  }
+  traced_particle_.reset();
 }
 
 /// An FP also counts the matter of other solids within rcut. Only FPs of solids that near each other are looked at.

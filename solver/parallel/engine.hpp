@@ -2,11 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "parallel/communicator.hpp"
 #include "parallel/domains.hpp"
+#include "parallel/face_ledger.hpp"
 #include "parallel/fluid_pass.hpp"
 #include "parallel/halo.hpp"
 #include "particles/cell_levels.hpp"
@@ -17,6 +19,7 @@ namespace mappm {
 struct ParallelOptions {
   int threads = 1;
   std::uint64_t rebalance = 0;  // steps between moves of the domain borders to the particle load; 0: never
+  std::uint64_t faces = 0;      // steps between ledgers of the faces of the domains; 0: none
 };
 
 template <int D>
@@ -31,6 +34,12 @@ class ParallelEngine {
   const std::string& range_error() const { return range_error_; }
   PhaseSeconds phase_seconds() const;
   const Domains<D>& domains() const { return domains_; }
+  /// The ledger of the faces in the last step, in the order of partners, then the entry of all partners; empty where
+  /// none was due.
+  const std::vector<FaceImpulse<D>>& faces() const { return faces_; }
+
+  void trace_next_step(std::uint64_t particle) { traced_particle_ = particle; }
+  const MaybeTrace<D>& last_trace() const { return trace_; }
 
   /// Moves the borders of the domains to the particle load and every particle to its new owner.
   void rebalance();
@@ -38,6 +47,7 @@ class ParallelEngine {
  private:
   void start_domains();
   void place_solids();
+  void explain_pairs();
   void sum_frozen_densities();
   void move_fluid();
   std::vector<HomeReport<D>> collect_reports();
@@ -59,6 +69,10 @@ class ParallelEngine {
   std::vector<FrozenInStep<D>> frozen_;
   std::vector<NeighbourSums<D>> frozen_sums_;
   std::vector<SolidLoad<D>> loads_;  // of owned solids
+
+  std::vector<FaceImpulse<D>> faces_;
+  std::optional<std::uint64_t> traced_particle_;  // in the next step
+  MaybeTrace<D> trace_;
 
   std::string range_error_;
   double seconds_[5] = {};

@@ -36,6 +36,19 @@ struct UnitFactor {
   }
 };
 
+/// beta of the pairs of one FP.
+template <int D>
+struct NoSlipFactor {
+  const Model<D>& model;
+  const FrozenInStep<D>& fp;
+  Lanes operator()(const Vec<D, Lanes>& r) const {
+    if (!model.terms.extrapolated) return Lanes(1.0);
+    Vec<D, Lanes> normal;
+    for (int axis = 0; axis < D; ++axis) normal[axis] = Lanes(fp.place.normal[axis]);
+    return no_slip_factor(r, normal, Lanes(fp.depth), model.no_slip_nearest);
+  }
+};
+
 }  // namespace
 
 template <int D>
@@ -140,6 +153,18 @@ void FluidPass<D>::for_each_band(const CellGrid<D>& grid, Work&& work) const {
 }
 
 template <int D>
+template <class Work>
+void FluidPass<D>::for_each_row(const CellGrid<D>& grid, int first_plane, int last_plane, Work&& work) const {
+  Vec<D, int> row;
+  for (row[D - 1] = first_plane; row[D - 1] < last_plane; ++row[D - 1]) {
+    if constexpr (D == 2)
+      work(row);
+    else
+      for (row[1] = 0; row[1] < grid.count(1); ++row[1]) work(row);
+  }
+}
+
+template <int D>
 void FluidPass<D>::sum(FluidParticles<D>& fluid, const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
                        std::vector<NeighbourSums<D>>& frozen_sums) {
   prepare(fluid);
@@ -148,14 +173,8 @@ void FluidPass<D>::sum(FluidParticles<D>& fluid, const CellGrid<D>& grid, const 
   const PairFields<D> arrays = fields(fluid);
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     for_each_band(grid, [&](int first, int last) {
-      Vec<D, int> row;
-      for (row[D - 1] = first; row[D - 1] < last; ++row[D - 1]) {
-        if constexpr (D == 2) {
-          sum_row<Kernel, transport>(fluid, grid, arrays, row);
-        } else {
-          for (row[1] = 0; row[1] < grid.count(1); ++row[1]) sum_row<Kernel, transport>(fluid, grid, arrays, row);
-        }
-      }
+      for_each_row(grid, first, last,
+                   [&](const Vec<D, int>& row) { sum_row<Kernel, transport>(fluid, grid, arrays, row); });
     });
     frozen_sums.assign(frozen.size(), {});
     std::vector<std::vector<std::uint32_t>> by_plane(static_cast<std::size_t>(grid.count(D - 1)));
@@ -169,11 +188,12 @@ void FluidPass<D>::sum(FluidParticles<D>& fluid, const CellGrid<D>& grid, const 
   });
 }
 
-/// All pairs whose first PP lies in this row; a pair of two ghosts is left out.
+/// All pairs of PPs whose first one lies in this row: calls work(i, for_each_range) for each particle i of the row, in
+/// which for_each_range(pair_with) calls pair_with(first, last) for its ranges of partners. A pair of two ghosts is
+/// left out.
 template <int D>
-template <class Kernel, bool transport>
-void FluidPass<D>::sum_row(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const PairFields<D>& fields,
-                           const Vec<D, int>& row) {
+template <class Work>
+void FluidPass<D>::for_each_centre(const CellGrid<D>& grid, const Vec<D, int>& row, Work&& work) const {
   const auto is_inner_row = [&](const Vec<D, int>& at) {
     for (int axis = 1; axis < D; ++axis)
       if (!grid.is_inner(axis, at[axis])) return false;
@@ -202,34 +222,39 @@ void FluidPass<D>::sum_row(const FluidParticles<D>& fluid, const CellGrid<D>& gr
                          last < first ? 0u : grid.start(cells + static_cast<std::size_t>(last) + 1)};
       if (same_row) range[ranges - 1].first = std::max(range[ranges - 1].first, begin);
     }
-    for (std::uint32_t i = begin; i < end; ++i) {
-      detail::LaneSums<D> sums{};
-      const PairCentre<D> particle = centre(fluid, i);
-      for (std::size_t n = 0; n < ranges; ++n) {
-        const std::uint32_t first = range[n].first <= i && i < range[n].second ? i + 1 : range[n].first;
-        if (first < range[n].second)
-          pair_row<Kernel, transport, false>(model_.pair, fields, particle, first, range[n].second, UnitFactor{}, sums);
-      }
-      add_to_fields(fields, i, total(sums), transport);
-    }
+    for (std::uint32_t i = begin; i < end; ++i)
+      work(
+          i, [&](auto&& pair_with) __attribute__((always_inline)) {
+            for (std::size_t n = 0; n < ranges; ++n) {
+              const std::uint32_t first = range[n].first <= i && i < range[n].second ? i + 1 : range[n].first;
+              if (first < range[n].second) pair_with(first, range[n].second);
+            }
+          });
   }
 }
 
-/// All PPs near one FP; r of the law points from the FP to the PP.
 template <int D>
 template <class Kernel, bool transport>
-void FluidPass<D>::sum_frozen(const CellGrid<D>& grid, const PairFields<D>& fields, const FrozenInStep<D>& fp,
-                              NeighbourSums<D>& sums) const {
+void FluidPass<D>::sum_row(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const PairFields<D>& fields,
+                           const Vec<D, int>& row) {
+  // A call for each particle and range would cost a tenth of the pass, and the compiler would choose it.
+  for_each_centre(
+      grid, row, [&](std::uint32_t i, const auto& for_each_range_of_i) __attribute__((always_inline)) {
+        detail::LaneSums<D> sums{};
+        const PairCentre<D> particle = centre(fluid, i);
+        for_each_range_of_i([&](std::uint32_t first, std::uint32_t last) __attribute__((always_inline)) {
+          pair_row<Kernel, transport, false>(model_.pair, fields, particle, first, last, UnitFactor{}, sums);
+        });
+        add_to_fields(fields, i, total(sums), transport);
+      });
+}
+
+/// Calls pair_with(first, last) for the ranges of PPs near one FP.
+template <int D>
+template <class PairWith>
+void FluidPass<D>::for_each_range(const CellGrid<D>& grid, const FrozenInStep<D>& fp, PairWith&& pair_with) const {
   Vec<D, int> cell;
   for (int axis = 0; axis < D; ++axis) cell[axis] = grid.coordinate(axis, fp.place.x[axis]);
-  const PairCentre<D> particle{fp.place.x, fp.place.v, fp.volume};
-  const auto beta = [&](const Vec<D, Lanes>& r) {
-    if (!model_.terms.extrapolated) return Lanes(1.0);
-    Vec<D, Lanes> normal;
-    for (int axis = 0; axis < D; ++axis) normal[axis] = Lanes(fp.place.normal[axis]);
-    return no_slip_factor(r, normal, Lanes(fp.depth), model_.no_slip_nearest);
-  };
-  detail::LaneSums<D> lanes{};
   for (const RowOffset& offset : all_rows_) {
     const Vec<D, int> other = cell + offset.cell;
     bool inside = true;
@@ -240,9 +265,80 @@ void FluidPass<D>::sum_frozen(const CellGrid<D>& grid, const PairFields<D>& fiel
     const int last = std::min(cell[0] + offset.reach, grid.count(0) - 1);
     const std::uint32_t begin = grid.start(cells + static_cast<std::size_t>(first));
     const std::uint32_t end = grid.start(cells + static_cast<std::size_t>(last) + 1);
-    if (begin < end) pair_row<Kernel, transport, true>(model_.pair, fields, particle, begin, end, beta, lanes);
+    if (begin < end) pair_with(begin, end);
   }
+}
+
+/// All PPs near one FP; r of the law points from the FP to the PP.
+template <int D>
+template <class Kernel, bool transport>
+void FluidPass<D>::sum_frozen(const CellGrid<D>& grid, const PairFields<D>& fields, const FrozenInStep<D>& fp,
+                              NeighbourSums<D>& sums) const {
+  const PairCentre<D> particle{fp.place.x, fp.place.v, fp.volume};
+  const NoSlipFactor<D> beta{model_, fp};
+  detail::LaneSums<D> lanes{};
+  for_each_range(grid, fp, [&](std::uint32_t begin, std::uint32_t end) {
+    pair_row<Kernel, transport, true>(model_.pair, fields, particle, begin, end, beta, lanes);
+  });
   sums = total(lanes);
+}
+
+/// One pair as the pass would compute it, alone: what it adds to the centre and to particle j.
+template <int D>
+template <class Kernel, bool transport, bool lanes_first, class Beta>
+auto FluidPass<D>::sums_of_pair(const FluidParticles<D>& fluid, const PairCentre<D>& centre, std::uint32_t j,
+                                const Beta& beta) -> PairSums {
+  for (int axis = 0; axis < D; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    impulse_[a][j] = 0;
+    if constexpr (transport) shift_[a][j] = 0;
+  }
+  density_[j] = 0;
+  detail::LaneSums<D> lanes{};
+  pair_row<Kernel, transport, lanes_first>(model_.pair, fields(fluid), centre, j, j + 1, beta, lanes);
+  return {total(lanes), sums(j)};
+}
+
+template <int D>
+std::optional<std::vector<PartnerTrace<D>>> FluidPass<D>::trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
+                                                                const std::vector<FrozenInStep<D>>& frozen,
+                                                                std::uint64_t particle) const {
+  std::vector<PartnerTrace<D>> partners;
+  const auto keep = [&](const PartnerTrace<D>& partner) {
+    if (partner.any()) partners.push_back(partner);
+  };
+  const auto is_owned = [&](std::size_t i) {
+    for (int axis = 0; axis < D; ++axis)
+      if (!grid.is_inner(axis, grid.coordinate(axis, fluid.x(axis)[i]))) return false;
+    return true;
+  };
+  std::uint32_t traced = 0;
+  while (traced < fluid.size() && !(fluid.id[traced] == particle && is_owned(traced))) ++traced;
+  if (traced == fluid.size()) return std::nullopt;
+  FluidPass<D> alone = *this;  // sums elsewhere
+  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
+    const auto fluid_pair_sums = [&](std::uint32_t i, std::uint32_t j) {
+      return alone.sums_of_pair<Kernel, transport, false>(fluid, centre(fluid, i), j, UnitFactor{});
+    };
+    for_each_row(grid, 0, grid.count(D - 1), [&](const Vec<D, int>& row) {
+      for_each_centre(grid, row, [&](std::uint32_t i, const auto& for_each_range_of_i) {
+        for_each_range_of_i([&](std::uint32_t first, std::uint32_t last) {
+          for (std::uint32_t j = first; i == traced && j < last; ++j)
+            keep({false, fluid.id[j], 0, fluid_pair_sums(i, j).centre});
+          if (first <= traced && traced < last) keep({false, fluid.id[i], 0, fluid_pair_sums(i, traced).other});
+        });
+      });
+    });
+    for (const FrozenInStep<D>& fp : frozen)
+      for_each_range(grid, fp, [&](std::uint32_t first, std::uint32_t last) {
+        if (traced < first || last <= traced) return;
+        const PairCentre<D> centre_of_fp{fp.place.x, fp.place.v, fp.volume};
+        const NoSlipFactor<D> beta{model_, fp};
+        keep({true, fp.solid, fp.index,
+              alone.sums_of_pair<Kernel, transport, true>(fluid, centre_of_fp, traced, beta).other});
+      });
+  });
+  return partners;
 }
 
 template class FluidPass<2>;

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <concepts>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "particles/pair_trace.hpp"
 #include "particles/state.hpp"
 
 namespace mappm {
@@ -22,6 +24,9 @@ concept Engine = requires(E engine, const E constant) {
   /// Empty, or the first value that left its range on this process: step, particle, value and likely cause.
   { constant.range_error() } -> std::convertible_to<std::string>;
   { constant.phase_seconds() } -> std::convertible_to<PhaseSeconds>;
+  /// Asks for the trace of one PP in the next step; after it the owner of the PP has the trace, for one step.
+  engine.trace_next_step(std::uint64_t{});
+  { constant.last_trace() } -> std::same_as<const MaybeTrace<D>&>;
 };
 
 }  // namespace mappm

@@ -1,12 +1,21 @@
 // State equation of the weakly compressible fluid.
 #pragma once
 
+#include <cmath>
+
 namespace mappm {
 
 /// p = c^2 (rho - rho0) + p_b
 template <class Real>
 Real pressure(const Real& rho, double rho0, double c, double background) {
   return Real(c * c) * (rho - Real(rho0)) + Real(background);
+}
+
+/// Energy of compression per mass, the integral of p / rho^2 from rho0 on:
+///   e = c^2 (ln(rho / rho0) + rho0 / rho - 1) + p_b (1 / rho0 - 1 / rho)
+/// For output only: it calls the mathematics library.
+inline double internal_energy(double rho, double rho0, double c, double background) {
+  return c * c * (std::log(rho / rho0) + rho0 / rho - 1.0) + background * (1.0 / rho0 - 1.0 / rho);
 }
 
 /// What the pair law reads of a particle's density: V^2 = 1/rho^2 and p V^2 (PP mass 1).

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <optional>
 
 #include "scene/packing.hpp"
@@ -49,7 +50,7 @@ std::vector<Triple> read_array(const Fields& table, const Scene& scene) {
   double solids = 1.0;
   Triple spacing{}, offset{};
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimension); ++axis) {
-    if (count[axis] < 1.0 || count[axis] != static_cast<double>(static_cast<std::int64_t>(count[axis])))
+    if (count[axis] < 1.0 || count[axis] != std::floor(count[axis]))
       table.fail("count", "must be whole numbers of at least 1, one per axis");
     solids *= count[axis];
     if (solids > static_cast<double>(most_solids))

@@ -208,6 +208,7 @@ template <int D>
 BuiltModel<D> make_model(const Scene& scene) {
   const Lattice<D> lattice = make_lattice<D>(scene);
   check_box(scene, lattice);
+  check_balls<D>(scene);
   Model<D> model = start_model(scene, lattice);
   model.shapes = make_shapes(scene, model, lattice);
   check_solids(scene, model);

@@ -1,10 +1,10 @@
 // The scene's TOML tree as it stands after the overrides. Private to the reader.
 #pragma once
 
-#include <toml++/toml.h>
-
 #include <string>
 #include <vector>
+
+#include "scene/toml.hpp"
 
 namespace mappm {
 

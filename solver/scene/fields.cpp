@@ -12,6 +12,9 @@ namespace mappm {
 
 namespace {
 
+/// Beyond these, products of a few quantities leave the range of a double.
+constexpr double largest_number = 1e30, smallest_number = 1e-30;
+
 std::string joined(const std::vector<std::string>& names, const char* quote) {
   std::string text;
   for (const std::string& name : names) text += fmt::format("{}{}{}{}", text.empty() ? "" : ", ", quote, name, quote);
@@ -84,6 +87,9 @@ double Fields::number_of(const toml::node& node, const std::string& key, Quantit
     fail(key, "wrong type; write a number");
   }
   if (!std::isfinite(value)) fail(key, "is not finite; write a finite number");
+  if (const double size = std::fabs(value); size > largest_number || (size > 0.0 && size < smallest_number))
+    fail(key, fmt::format("must be 0 or lie between {} and {} in size; choose other units", smallest_number,
+                          largest_number));
   if (sign == Sign::positive && value <= 0.0) fail(key, "must be positive; write a number above 0");
   if (sign == Sign::not_negative && value < 0.0) fail(key, "must not be negative; write 0 or more");
   return value;

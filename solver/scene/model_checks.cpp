@@ -16,6 +16,9 @@ namespace {
 /// More PPs than this within rcut^D, and a density leaves the range of its fixed-point numbers when it doubles.
 constexpr double most_dense = 0.5 * exact_quanta * density_quantum;
 
+/// PP masses: the momentum of a heavier solid at the sound speed, and sums of such, could leave their 128 bits.
+constexpr double heaviest_solid = 0x1p52;
+
 /// Resolutions and Mach numbers at which drags were measured against known values.
 constexpr double least_support = 2.5, most_support = 4.5, least_radius = 4.0, largest_mach = 0.101;
 
@@ -106,6 +109,30 @@ void check_box(const Scene& scene, const Lattice<D>& lattice) {
                      "makes more PPs than can be numbered; enlarge it");
 }
 
+namespace {
+
+/// `what`: the solid, or more, that is `width` wide.
+void check_width(const Scene& scene, const BodyScene& body, const char* what, double width, double side) {
+  if (width > side)
+    throw InputError(scene.file, body.key, "",
+                     fmt::format("{} is {:.6g} wide, more than the box side {}; make it smaller or enlarge box.size",
+                                 what, width, side));
+}
+
+}  // namespace
+
+template <int D>
+void check_balls(const Scene& scene) {
+  for (const BodyScene& body : scene.bodies)
+    for (const BallScene& ball : body.balls)
+      for (std::size_t axis = 0; axis < D; ++axis) {
+        const double radius = std::max(ball.radius, ball.contact_radius);
+        check_width(scene, body, "the solid", 2.0 * radius, scene.box[axis]);
+        check_width(scene, body, "the solid with the origin of its frame", std::fabs(ball.centre[axis]) + radius,
+                    scene.box[axis]);
+      }
+}
+
 template <int D>
 void check_solids(const Scene& scene, const Model<D>& model) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -117,15 +144,12 @@ void check_solids(const Scene& scene, const Model<D>& model) {
             fmt::format("the fluid sees through a wall thinner than rcut = {}; make it thicker", scene.fluid.cutoff));
       continue;
     }
+    if (model.shapes[i].mass > heaviest_solid)
+      throw InputError(scene.file, body.key + ".density", fmt::format("{}", body.density),
+                       fmt::format("a solid has the mass of {:.3g} PPs, more than {:.3g}; lower it",
+                                   model.shapes[i].mass, heaviest_solid));
     const double width = 2.0 * model.shapes[i].reach * scene.fluid.cutoff;
-    for (int axis = 0; axis < D; ++axis) {
-      const double side = scene.box[static_cast<std::size_t>(axis)];
-      if (width > side)
-        throw InputError(scene.file, body.key, "",
-                         fmt::format("the solid is {:.6g} wide, more than the box side {}; make it smaller or enlarge "
-                                     "box.size",
-                                     width, side));
-    }
+    for (std::size_t axis = 0; axis < D; ++axis) check_width(scene, body, "the solid", width, scene.box[axis]);
   }
   check_overlaps(scene);
 }
@@ -202,6 +226,8 @@ template void check_velocities(const Scene&, const Model<2>&);
 template void check_velocities(const Scene&, const Model<3>&);
 template void check_box(const Scene&, const Lattice<2>&);
 template void check_box(const Scene&, const Lattice<3>&);
+template void check_balls<2>(const Scene&);
+template void check_balls<3>(const Scene&);
 template void check_solids(const Scene&, const Model<2>&);
 template void check_solids(const Scene&, const Model<3>&);
 template std::vector<std::string> scene_warnings(const Scene&, const Model<2>&, const Lattice<2>&, const StepLimits&);

@@ -15,6 +15,10 @@ namespace mappm {
 template <int D>
 void check_box(const Scene& scene, const Lattice<D>& lattice);
 
+/// Balls against the box, roughly, before FPs are laid into them: check_solids measures them as they are.
+template <int D>
+void check_balls(const Scene& scene);
+
 /// Solids against box and cutoff, and against each other.
 template <int D>
 void check_solids(const Scene& scene, const Model<D>& model);

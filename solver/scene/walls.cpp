@@ -85,7 +85,7 @@ double distance_to_wall(const Scene& scene, const BodyScene& wall, const Triple&
 
 std::uint64_t lattice_nodes(const Scene& scene, int axis) {
   const double nodes = std::floor(scene.box[at(axis)] / scene.fluid.spacing + 0.5);
-  return nodes < 1.0 ? 1 : static_cast<std::uint64_t>(nodes);
+  return static_cast<std::uint64_t>(std::clamp(nodes, 1.0, too_many_nodes));
 }
 
 bool fits_lattice(const Scene& scene, const BodyScene& wall) {

@@ -18,7 +18,10 @@ WallSide side_of(const Scene& scene, const BodyScene& wall, int axis);
 /// Distance of a point to a wall's surface, by the nearest image: negative inside.
 double distance_to_wall(const Scene& scene, const BodyScene& wall, const Triple& x);
 
-/// Nodes of the start's lattice along a side of the box.
+/// More nodes than can be numbered (check_box refuses them), and few enough for a 64-bit integer.
+inline constexpr double too_many_nodes = 0x1p51;
+
+/// Nodes of the start's lattice along a side of the box: as many as come nearest to the declared spacing.
 std::uint64_t lattice_nodes(const Scene& scene, int axis);
 
 /// Whether all surfaces of a wall lie between two rows of nodes.

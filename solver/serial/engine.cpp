@@ -1,5 +1,6 @@
 #include "serial/engine.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -77,6 +78,7 @@ void SerialEngine<D>::step() {
     sum_frozen_densities<Kernel>();
   });
   const double summed = seconds_now();
+  trace_partners();
   move_fluid();
   move_solids();
   ++state_.step;
@@ -111,18 +113,43 @@ void SerialEngine<D>::find_neighbours() {
   }
 }
 
+/// Calls visit(j, given) with what PP j gives to PP i.
 template <int D>
-template <class Kernel, bool transport>
-void SerialEngine<D>::sum_over_fluid(std::size_t i) {
+template <class Kernel, bool transport, class Visit>
+void SerialEngine<D>::for_each_fluid_partner(std::size_t i, Visit&& visit) const {
   const Vec<D, double> x = position(state_.fluid, i), v = velocity(state_.fluid, i);
-  NeighbourSums<D>& sums = sums_[i];
   fluid_cells_.for_each_near(x, [&](int neighbour) {
     const auto j = static_cast<std::size_t>(neighbour);
     if (j == i) return;
     const FluidPair<D, double> pair{nearest_vector(x, position(state_.fluid, j)), v - velocity(state_.fluid, j),
                                     volume_[i].v2 + volume_[j].v2, volume_[i].pv2 + volume_[j].pv2};
     const Vec<D, double> r = separation(model_.pair, pair.d);
-    const auto given = fluid_pair<Kernel, transport>(model_.pair, pair, r, cut_distance(r), 1.0);
+    visit(j, fluid_pair<Kernel, transport>(model_.pair, pair, r, cut_distance(r), 1.0));
+  });
+}
+
+/// Calls visit(k, given) with what FP k gives to PP i.
+template <int D>
+template <class Kernel, bool transport, class Visit>
+void SerialEngine<D>::for_each_frozen_partner(std::size_t i, Visit&& visit) const {
+  const Vec<D, double> x = position(state_.fluid, i), v = velocity(state_.fluid, i);
+  frozen_cells_.for_each_near(x, [&](int neighbour) {
+    const auto k = static_cast<std::size_t>(neighbour);
+    const FrozenInStep<D>& fp = frozen_[k];
+    const FluidPair<D, double> pair{nearest_vector(x, fp.place.x), v - fp.place.v, volume_[i].v2 + fp.volume.v2,
+                                    volume_[i].pv2 + fp.volume.pv2};
+    const Vec<D, double> r = separation(model_.pair, pair.d);
+    const double beta =
+        model_.terms.extrapolated ? no_slip_factor(r, fp.place.normal, fp.depth, model_.no_slip_nearest) : 1.0;
+    visit(k, fluid_pair<Kernel, transport>(model_.pair, pair, r, cut_distance(r), beta));
+  });
+}
+
+template <int D>
+template <class Kernel, bool transport>
+void SerialEngine<D>::sum_over_fluid(std::size_t i) {
+  NeighbourSums<D>& sums = sums_[i];
+  for_each_fluid_partner<Kernel, transport>(i, [&](std::size_t, const PairResult<D, double>& given) {
     sums.impulse += given.impulse;
     sums.shift += given.shift;
     sums.density += given.density;
@@ -132,22 +159,37 @@ void SerialEngine<D>::sum_over_fluid(std::size_t i) {
 template <int D>
 template <class Kernel, bool transport>
 void SerialEngine<D>::sum_over_frozen(std::size_t i) {
-  const Vec<D, double> x = position(state_.fluid, i), v = velocity(state_.fluid, i);
   NeighbourSums<D>& sums = sums_[i];
-  frozen_cells_.for_each_near(x, [&](int neighbour) {
-    const auto k = static_cast<std::size_t>(neighbour);
-    const FrozenInStep<D>& fp = frozen_[k];
-    const FluidPair<D, double> pair{nearest_vector(x, fp.place.x), v - fp.place.v, volume_[i].v2 + fp.volume.v2,
-                                    volume_[i].pv2 + fp.volume.pv2};
-    const Vec<D, double> r = separation(model_.pair, pair.d);
-    const double beta =
-        model_.terms.extrapolated ? no_slip_factor(r, fp.place.normal, fp.depth, model_.no_slip_nearest) : 1.0;
-    const auto given = fluid_pair<Kernel, transport>(model_.pair, pair, r, cut_distance(r), beta);
+  for_each_frozen_partner<Kernel, transport>(i, [&](std::size_t k, const PairResult<D, double>& given) {
     sums.impulse += given.impulse;
     sums.shift += given.shift;
     sums.density += given.density;
     frozen_sums_[k].impulse -= given.impulse;
     frozen_sums_[k].density += given.density;
+  });
+}
+
+/// What each partner gave to one PP, where that was asked for.
+template <int D>
+void SerialEngine<D>::trace_partners() {
+  trace_.reset();
+  if (!traced_particle_.has_value()) return;
+  const auto& ids = state_.fluid.id;
+  const auto i = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), *traced_particle_) - ids.begin());
+  const StepTrace<D> empty{state_.step, *traced_particle_, {}};
+  traced_particle_.reset();
+  if (i == ids.size()) return;
+  trace_ = empty;
+  const auto keep = [&](bool is_frozen, std::uint64_t id, std::uint32_t index, const PairResult<D, double>& given) {
+    const PartnerTrace<D> partner{is_frozen, id, index, {given.impulse, given.shift, given.density}};
+    if (partner.any()) trace_->partners.push_back(partner);
+  };
+  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
+    for_each_fluid_partner<Kernel, transport>(i,
+                                              [&](std::size_t j, const auto& given) { keep(false, ids[j], 0, given); });
+    for_each_frozen_partner<Kernel, transport>(i, [&](std::size_t k, const auto& given) {
+      keep(true, state_.solids[frozen_[k].solid].id, frozen_[k].index, given);
+    });
   });
 }
 

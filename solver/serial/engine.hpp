@@ -1,6 +1,7 @@
 // The reference engine: one process, plain loops in double, a step that reads like the paper.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,15 +22,22 @@ class SerialEngine {
   void step();
   State<D>& state() { return state_; }
   const std::string& range_error() const { return range_error_; }
+  void trace_next_step(std::uint64_t particle) { traced_particle_ = particle; }
+  const MaybeTrace<D>& last_trace() const { return trace_; }
   PhaseSeconds phase_seconds() const { return {{"pairs", pair_seconds_}, {"integrate", integrate_seconds_}}; }
 
  private:
   void place_solids();
   void find_neighbours();
+  template <class Kernel, bool transport, class Visit>
+  void for_each_fluid_partner(std::size_t i, Visit&& visit) const;
+  template <class Kernel, bool transport, class Visit>
+  void for_each_frozen_partner(std::size_t i, Visit&& visit) const;
   template <class Kernel, bool transport>
   void sum_over_fluid(std::size_t i);
   template <class Kernel, bool transport>
   void sum_over_frozen(std::size_t i);
+  void trace_partners();
   template <class Kernel>
   void sum_frozen_densities();
   void move_fluid();
@@ -45,6 +53,9 @@ class SerialEngine {
   std::vector<SolidInStep<D>> bodies_;
   std::vector<FrozenInStep<D>> frozen_;
   std::vector<NeighbourSums<D>> frozen_sums_;
+
+  std::optional<std::uint64_t> traced_particle_;  // in the next step
+  MaybeTrace<D> trace_;
 
   std::string range_error_;
   double pair_seconds_ = 0.0, integrate_seconds_ = 0.0;

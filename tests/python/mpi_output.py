@@ -5,6 +5,7 @@ Oracle: the same scene run without interruption by the serial reference; VTK's o
 
 import json
 import os
+import shlex
 import signal
 import subprocess
 import time
@@ -16,7 +17,7 @@ import pyvista
 
 from verification.solver import MPI_ENVIRONMENT, ROOT, Options, program, run, start
 
-SCENE = Path(__file__).parent / "scenes" / "crossing_2d.toml"
+SCENE = ROOT / "cases" / "crossing_2d" / "case.toml"
 LONG_SCENE = ROOT / "cases" / "gas_solid_small" / "case.toml"
 RANKS = (0, 1, 3)
 
@@ -38,7 +39,7 @@ def test_vtk_reads_the_same_points_from_both_programs(tmp_path: Path) -> None:
         fluid = pyvista.read(finished.snapshots()[-1])
         solids = pyvista.read(finished.snapshots("solids")[-1])
         assert fluid.n_cells == fluid.n_points == finished.record["particles"]
-        assert solids.n_points == 8
+        assert solids.n_points == 12
         assert np.all(fluid.celltypes == pyvista.CellType.VERTEX)
         assert fluid.field_data["TimeValue"][0] == pytest.approx(20 * finished.record["time_step"], rel=1e-15)
         order = np.lexsort((fluid["id"], fluid["solid"]))
@@ -72,7 +73,11 @@ def test_a_signal_ends_a_run_that_can_be_resumed(tmp_path: Path, ranks: int) -> 
     stdout, _ = process.communicate(timeout=60)
     if ranks < 2:  # mpirun itself ends with 1 where it is asked to end
         assert process.returncode == 0
-    assert "--resume" in stdout
+    hint = next(line for line in stdout.splitlines() if "resume with: " in line).partition("resume with: ")[2]
+    words = shlex.split(hint)
+    assert words[0] == ("mpirun" if ranks > 1 else "mappm" if ranks else "mappm-reference")
+    assert Path(words[words.index("--resume") + 1]).exists()
+    assert "output.sample=10" in words
     record = json.loads((tmp_path / "run.json").read_text())
     assert record["state"] == "stopped"
 

@@ -13,7 +13,7 @@ import pytest
 from verification.solver import MPI_ENVIRONMENT, Options, program, run
 
 SCENES = Path(__file__).parent / "scenes"
-SCENE = SCENES / "crossing_2d.toml"
+SCENE = SCENES / "random_discs.toml"
 INPUT, RANGE = 2, 3
 
 
@@ -53,11 +53,33 @@ def override(*settings: str) -> Options:
         (["body.0.random.count=1000000000000000000"], ["body.0.random.count", "at most"]),
         (["body.0.angular_velocity=20.0"], ["fluid.sound_speed", "largest declared speed"]),  # of the rim
         (["body.0.radius=0.26", "body.0.random.count=2"], ["box.size", "two periodic images"]),
+        (["fluid.vortices={amplitude=0.1}"], ["fluid.vortices", "box of equal sides", "1 and 2"]),
+        (["fluid.abc={amplitude=0.1}"], ["fluid.abc", "two sides"]),
+        (["fluid.disorder={amplitude=0.5, seed=1}"], ["fluid.disorder.amplitude", "0.5", "[0, 0.25]"]),
+        (["fluid.disorder={amplitude=0.1, seed=-1}"], ["fluid.disorder.seed", "-1"]),
+        (['force.wave={amplitude=0.1, direction="x", gradient="y"}'], ["force.solid", "balance", "uniform force only"]),
+        (['force.wave={amplitude=0.1, direction="x"}'], ["force.wave.gradient", "missing"]),
     ],
 )
 @pytest.mark.parametrize("ranks", [0, 1])
 def test_the_message_names_key_value_and_fix(tmp_path: Path, ranks: int, settings: list[str], parts: list[str]) -> None:
     message = only_error(call(Options(ranks=ranks, overrides=tuple(settings)), tmp_path), INPUT)
+    for part in parts:
+        assert part in message
+
+
+@pytest.mark.parametrize(
+    ("setting", "parts"),
+    [
+        ("body.2.extent.to=0.875", ["body.2.extent.to", "0.875", "open to the fluid"]),
+        ("body.2.extent.to=1.25", ["body.2.position", "overlaps the wall body.0", "extent"]),
+        ("body.2.extent.axis=x", ["body.2.extent.axis", "normal"]),
+        ("body.2.extent.from=1.0", ["body.2.extent.from", "less than to"]),
+        ("body.0.thickness=0.24", ["body.0", "whole multiples"]),
+    ],
+)
+def test_walls_that_cannot_be(tmp_path: Path, setting: str, parts: list[str]) -> None:
+    message = only_error(call(override(setting), tmp_path, SCENES / "cavity.toml"), INPUT)
     for part in parts:
         assert part in message
 
@@ -110,7 +132,9 @@ def test_paths_that_cannot_be_used(tmp_path: Path) -> None:
 
 def test_the_command_line_is_checked_too(tmp_path: Path) -> None:
     for words in ([], ["walk"], ["run"], ["run", str(SCENE), "--speed", "3"], ["run", str(SCENE), "--threads", "0"],
-                  ["run", str(SCENE), "--steps", "-5"], ["run", str(SCENE), "--rebalance", "-1"]):
+                  ["run", str(SCENE), "--steps", "-5"], ["run", str(SCENE), "--rebalance", "-1"],
+                  ["run", str(SCENE), "--trace", "7"], ["run", str(SCENE), "--trace", "7@-1"],
+                  ["run", str(SCENE), "--trace", "7@20", "--steps", "20"]):
         finished = subprocess.run([program("mappm"), *words], cwd=tmp_path, capture_output=True, text=True)
         assert finished.returncode == INPUT
         assert finished.stderr.strip()

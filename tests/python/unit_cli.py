@@ -19,7 +19,7 @@ import pyvista
 
 from verification.solver import MPI_ENVIRONMENT, ROOT, Options, Run, program, run
 
-SCENE = Path(__file__).parent / "scenes" / "crossing_2d.toml"
+SCENE = ROOT / "cases" / "crossing_2d" / "case.toml"
 LAST_LINE = re.compile(r"digest [0-9a-f]{16} step 20 particles \d+ ranks (\d) particle-steps/s [0-9.e+]+")
 
 
@@ -80,7 +80,7 @@ def test_a_snapshot_opens_in_pyvista(tmp_path: Path) -> None:
     solids = pyvista.read(finished.snapshots("solids")[-1])
     assert fluid.n_points == finished.record["particles"]
     assert solids.n_points == finished.record["solids"]
-    assert np.all((fluid.points >= 0) & (fluid.points <= [1.0, 2.0, 0.0]))
+    assert np.all((fluid.points >= 0) & (fluid.points <= [1.0, 3.0, 0.0]))
     pps = fluid["kind"] == 0
     assert len(np.unique(fluid["id"][pps])) == pps.sum()
     # The mean of the velocities in the picture is that of the series: two ways of the same numbers, equal to rounding.

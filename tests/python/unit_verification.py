@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from verification.case import Observable, all_cases, read_case
+from verification.compare import PairDifference, trace_differences
+from verification.equivalence import Row, read_equivalence
 from verification.errors import CaseError
-from verification.fits import decay_rate, extrapolate, minima
+from verification.fits import decay_rate, extrapolate
 from verification.judge import CORRECT, OPEN, WRONG, Outcome, measures
 from verification.observables import Measured
 from verification.series import first_difference, read_table
@@ -54,13 +56,6 @@ def test_decay_rate_of_an_exponential() -> None:
     assert error < 1e-12
 
 
-def test_minima_of_a_damped_oscillation() -> None:
-    found = minima(TIME, np.cos(2.0 * TIME) ** 2 * np.exp(-0.05 * TIME))
-    exact = (np.arange(len(found)) + 0.5) * math.pi / 2.0
-    assert len(found) == 6
-    assert found == pytest.approx(exact, abs=1e-4)  # a parabola through samples 0.02 apart
-
-
 GIVEN = Observable("drag", "F", 50.0, 0.1, "hand", 0.03)
 
 
@@ -104,3 +99,61 @@ def test_a_bad_manifest_is_refused(tmp_path: Path, manifest: str, message: str) 
         read_case(file)
     assert str(file) in str(caught.value)
     assert message in str(caught.value)
+
+
+WHERE = "a/case.toml: case.equivalence"
+MATRIX = {"steps": 100, "every": 50, "variants": ["serial", "P=2"]}
+
+
+def test_words_of_a_variant_become_options() -> None:
+    labels = ["serial all-pairs", "domains 2x3", "P=2 threads 2", "rebalance 10", "build clang", "restart 2->3"]
+    found = [v.options for v in read_equivalence(MATRIX | {"variants": labels}, WHERE).variants]
+    assert [options.ranks for options in found] == [0, 6, 2, 2, 2, 2]
+    assert found[0].neighbours == "all-pairs"
+    assert found[1].domains == "2x3"
+    assert found[2].threads == 2
+    assert found[3].rebalance == 10
+    assert found[4].build.name == "clang"
+    assert read_equivalence(MATRIX | {"variants": labels}, WHERE).variants[5].resumed_on == 3
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"steps": 0}, "steps = 0: must be a positive"),
+        ({"every": 30}, "every = 30: must divide steps = 100"),
+        ({"variants": ["serial"]}, "variants = ['serial']: must be a list of at least two"),
+        ({"variants": ["serial", "serial"]}, "variants[1] = 'serial': stands twice"),
+        ({"variants": ["serial", "P=two"]}, "variants[1] = 'P=two': 'two' is no positive number"),
+        ({"variants": ["serial", "ranks 2"]}, "variants[1] = 'ranks 2': 'ranks' is unknown"),
+        ({"variants": ["serial", "P=3 domains 2x2"]}, "2x2 are 4 domains, not 3; write P=4"),
+        ({"variants": ["serial", "serial threads 2"]}, "the serial reference goes with"),
+        ({"variants": ["serial", "restart 2"]}, "restart stands alone, as in 'restart 2->3'"),
+        ({"colour": 1}, "colour = 1: unknown; known are steps, every, variants"),
+    ],
+)
+def test_a_bad_matrix_is_refused(changed: dict, message: str) -> None:
+    with pytest.raises(CaseError) as caught:
+        read_equivalence(MATRIX | changed, WHERE)
+    assert str(caught.value).startswith(WHERE + ".")
+    assert message in str(caught.value)
+
+
+def test_a_skipped_variant_is_not_equal() -> None:
+    assert Row("P=2", "00", samples=3).equal
+    assert not Row("P=2", "00", difference=50, samples=3).equal
+    assert not Row("build clang", skipped="not built").equal
+
+
+def test_pairs_that_differ_are_named(tmp_path: Path) -> None:
+    head = "step,particle,kind,partner,impulse_x,density\n"
+    one, other = tmp_path / "one.csv", tmp_path / "other.csv"
+    one.write_text(head + "5,1,PP,7,10,3\n5,1,PP,8,11,3\n5,1,FP,2:31,5,4\n5,1,PP,9,1,1\n")
+    other.write_text(head + "5,1,PP,7,10,3\n5,1,PP,8,12,3\n5,1,FP,2:31,5,4\n5,1,FP,2:31,5,4\n")
+    assert trace_differences(one, other) == (
+        PairDifference("PP 8", {"impulse_x": ("11", "12")}, (1, 1)),
+        PairDifference("FP 2:31", {}, (1, 2)),
+        PairDifference("PP 9", {}, (1, 0)),
+    )
+    assert trace_differences(one, other)[0].line(("a", "b")) == "a | b: pair with PP 8: impulse_x 11 | 12"
+    assert trace_differences(one, one) == ()

@@ -5,9 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from support import assert_correct, judged
-from verification.solver import Options, Run, run
-
-SCENES = Path(__file__).parent / "scenes"
+from verification.solver import ROOT, Options, Run, run
 
 
 def test_a_lattice_of_powers_of_two_stays_exactly_at_rest(tmp_path: Path) -> None:
@@ -33,10 +31,10 @@ def relative_velocities(finished: Run) -> tuple[np.ndarray, np.ndarray]:
 
 def test_a_boost_changes_relative_motion_by_rounding_only(tmp_path: Path) -> None:
     common = ("body.0.angular_velocity=0.4", "force.fluid=[-0.002,-0.01]")
-    resting = ("fluid.velocity=[0,0]", "body.0.velocity=[0,0]", *common)
-    boosted = ("fluid.velocity=[0.05,0.07]", "body.0.velocity=[0.05,0.07]", *common)
+    resting = ("fluid.velocity=[0,0]", "body.0.velocity=[0,0]", "body.1.velocity=[0,0]", *common)
+    boosted = ("fluid.velocity=[0.05,0.07]", "body.0.velocity=[0.05,0.07]", "body.1.velocity=[0.05,0.07]", *common)
     runs = [
-        run(SCENES / "crossing_2d.toml", tmp_path / str(i), Options(steps=100, overrides=overrides))
+        run(ROOT / "cases" / "crossing_2d" / "case.toml", tmp_path / str(i), Options(steps=100, overrides=overrides))
         for i, overrides in enumerate((resting, boosted))
     ]
     for a, b in zip(*(relative_velocities(finished) for finished in runs), strict=True):

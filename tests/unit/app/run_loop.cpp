@@ -85,16 +85,33 @@ class ToyRun : public testing::Test {
 
 TEST_F(ToyRun, samples_and_ends_with_the_line_that_scripts_read) {
   const std::string printed = run();
-  EXPECT_TRUE(contains(series(), "\n0,0,0,0,0,0,0,1,1,0,0,"));
+  EXPECT_TRUE(contains(series(), "\n0,0,0,0,0,0,0,0,0,2,1,1,0,0,"));
   // step 4, time 4 x 0.5 x 0.125; v = 4/8 x 4; superficial x 2 PPs / 64; energy 2 x (1/2)(1/4) x 128;
+  // angular momentum 2 x (1/2)(1/2) x 16, as both PPs lie 1/2 below the middle of the box;
   // momentum 2 x 1/2 = 2^48 iota, all of it from outside
-  EXPECT_TRUE(contains(series(), "\n4,0.25,2,0,0.0625,0,32,1,1,281474976710656,0,281474976710656,0,0,0,")) << series();
+  EXPECT_TRUE(contains(series(), "\n4,0.25,2,0,0.0625,0,32,0,8,2,1,1,281474976710656,0,281474976710656,0,0,0,"))
+      << series();
   EXPECT_TRUE(contains(series(), "\n12,0.75,6,0,"));
   const std::string digest = record()["digest"];
   EXPECT_EQ(printed.rfind("digest " + digest + " step 12 particles 2 ranks 1 particle-steps/s ", 0), 0u) << printed;
   EXPECT_TRUE(contains(series(), digest));
   EXPECT_EQ(files("snapshots"), std::vector<std::string>{"fluid_000000012.vtkhdf"}) << "none but the last";
   EXPECT_FALSE(fs::exists(folder_ / "checkpoints"));
+}
+
+TEST_F(ToyRun, traces_the_step_that_was_asked_for) {
+  options_.trace = TraceRequest{1, 6};
+  run();
+  const StepTrace<2> trace{6, 1, {}};
+  EXPECT_EQ(text_of(folder_ / "trace.csv"), trace_text(trace, model_.terms.transport));
+}
+
+TEST_F(ToyRun, refuses_a_trace_of_a_step_that_it_does_not_make) {
+  options_.trace = TraceRequest{1, 12};
+  const std::string message = refusal<InputError>([&] { run(); });
+  EXPECT_TRUE(contains(message, "--trace = 1@12: this run goes from step 0 to 12; choose a step from 0 to 11"))
+      << message;
+  EXPECT_FALSE(fs::exists(folder_ / "run.json"));
 }
 
 TEST_F(ToyRun, closes_the_ledger_in_its_record) {
@@ -139,7 +156,8 @@ TEST_F(ToyRun, resumed_leaves_the_files_of_one_that_was_not_interrupted) {
 
 TEST_F(ToyRun, stops_at_a_signal_with_a_checkpoint_and_says_how_to_go_on) {
   scene_.run.steps = 1000;
-  options_.overrides = {"a.b=1"};
+  options_.overrides = {"a.b=1", "c=it's two"};
+  options_.steps = 900;
   const std::string printed = run(0, 5);
   const auto json = record();
   EXPECT_EQ(json["state"], "stopped");
@@ -149,7 +167,8 @@ TEST_F(ToyRun, stops_at_a_signal_with_a_checkpoint_and_says_how_to_go_on) {
   const std::string path = (folder_ / fmt::format("checkpoints/checkpoint_{:09}.h5", stopped)).string();
   EXPECT_TRUE(fs::exists(path));
   EXPECT_TRUE(
-      contains(printed, "resume with: toy run toy.toml --set 'a.b=1' --out " + options_.out + " --resume " + path))
+      contains(printed, "resume with: toy run toy.toml --set a.b=1 --set 'c=it'\\''s two' --steps 900 --quiet --out " +
+                            options_.out + " --resume " + path))
       << printed;
   EXPECT_TRUE(contains(printed.substr(printed.rfind('\n', printed.size() - 2)), "\ndigest ")) << "the last line";
 }

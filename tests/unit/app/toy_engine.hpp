@@ -26,12 +26,15 @@ class ToyEngine {
   State<2>& state() { return state_; }
   const std::string& range_error() const { return error_; }
   PhaseSeconds phase_seconds() const { return {{"toy", 0.5}}; }
+  void trace_next_step(std::uint64_t particle) { trace_ = StepTrace<2>{state_.step, particle, {}}; }
+  const MaybeTrace<2>& last_trace() const { return trace_; }
 
   std::uint64_t bad_step = 0, signal_step = 0;  // 0: never
 
  private:
   State<2> state_;
   std::string error_;
+  MaybeTrace<2> trace_;
 };
 
 }  // namespace mappm::testing_tools

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/single_group.hpp"
+#include "output/file_seal.hpp"
 #include "unit/output/hand_state.hpp"
 #include "unit/output/scratch_folder.hpp"
 
@@ -47,7 +48,8 @@ class CheckpointFile : public testing::Test {
       H5Awrite(data, H5T_NATIVE_UINT64, words.data());
       H5Aclose(data);
     }
-    H5Fclose(file);
+    H5Fclose(file);  // cuts the seal off
+    seal_file(path_, group_);
   }
 
   ScratchFolder folder_;
@@ -120,14 +122,18 @@ TEST_F(CheckpointFile, refuses_a_file_cut_short_at_any_length) {
 
 TEST_F(CheckpointFile, refuses_a_file_of_another_kind) {
   testing_tools::write_text(path_, "no HDF5 at all");
-  EXPECT_TRUE(contains(refused(), "no HDF5 file"));
+  EXPECT_TRUE(contains(refused(), "c.h5: cannot be read: it is cut short, damaged or no checkpoint"));
   H5Fclose(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  seal_file(path_, group_);
   EXPECT_TRUE(contains(refused(), "attribute 'format' is missing"));
+  testing_tools::write_text(path_, "no HDF5 at all, but sealed");
+  seal_file(path_, group_);
+  EXPECT_TRUE(contains(refused(), "no HDF5 file"));
 }
 
 TEST_F(CheckpointFile, refuses_another_version_of_the_format) {
   alter(nullptr, "version");
-  EXPECT_TRUE(contains(refused(), "has version 2 of the checkpoint format"));
+  EXPECT_TRUE(contains(refused(), "has version 3 of the checkpoint format"));
 }
 
 TEST_F(CheckpointFile, refuses_solids_that_this_program_would_build_otherwise) {

@@ -48,7 +48,7 @@ TEST_F(Hdf5File, refuses_what_is_not_there) {
   const auto message = [&](auto&& work) { return refusal<InputError>(work); };
   EXPECT_TRUE(contains(message([&] { file.row_count("g/x"); }), "a.h5: cannot be read: data set 'g/x' is missing"));
   EXPECT_TRUE(contains(message([&] { file.text_attribute("g", "x"); }), "attribute 'x' is missing"));
-  EXPECT_TRUE(contains(message([&] { file.text_attribute("g", "number"); }), "attribute 'number' is no text"));
+  EXPECT_TRUE(contains(message([&] { file.text_attribute("g", "number"); }), "attribute 'number' is not one text"));
   EXPECT_TRUE(contains(message([&] { file.number_attribute("g", "numbers"); }), "is not one number"));
   EXPECT_TRUE(contains(message([&] { file.rows<std::int64_t>("g/pairs", 2, 2, 2); }), "is too short"));
   EXPECT_TRUE(contains(message([&] { file.rows<std::int64_t>("g/pairs", 0, 1, 3); }), "another width"));

@@ -29,6 +29,7 @@ RunRecord record() {
   record.iota = 0.125;
   record.ranks = 4;
   record.domains = {2, 2};
+  record.borders = {{0.0, 0.25, 1.0}, {0.0, 1.5, 2.0}};
   record.particles = 99;
   record.solids = 3;
   record.rate = 1e6;
@@ -48,6 +49,7 @@ TEST(RunRecord, has_every_key_that_readers_rely_on) {
   EXPECT_EQ(json["terms"], nlohmann::json({"fluid", "solids", "contact"}));
   EXPECT_EQ(json["wall_seconds"]["pairs"], 1.5);
   EXPECT_EQ(json["domains"], nlohmann::json({2, 2}));
+  EXPECT_EQ(json["borders"], nlohmann::json({{0.0, 0.25, 1.0}, {0.0, 1.5, 2.0}}));
   EXPECT_EQ(json["scene"]["text"], "name = 'a'\n");
   EXPECT_FALSE(json.contains("message"));
 }
@@ -79,8 +81,8 @@ TEST(TermNames, list_what_the_scene_declares) {
   EXPECT_EQ(term_names(Terms{}), std::vector<std::string>{"fluid"});
   Terms terms;
   terms.transport = terms.extrapolated = terms.body_force = terms.solids = terms.motion = terms.rotation = true;
-  terms.contact = true;
-  EXPECT_EQ(term_names(terms).size(), 8u);
+  terms.contact = terms.force_field = true;
+  EXPECT_EQ(term_names(terms).size(), 9u);
 }
 
 }  // namespace

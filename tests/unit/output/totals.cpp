@@ -30,6 +30,10 @@ TEST(Totals, are_the_sums_worked_by_hand) {
   EXPECT_EQ(static_cast<double>(totals.fluid_energy) * energy_quantum, 0.3125);  // (1/4 + 5/16 + 1/16) / 2
   EXPECT_EQ(static_cast<double>(totals.solid_energy) * energy_quantum, 3.0);     // 8 (5/16) + 8 (1/16)
   EXPECT_EQ(static_cast<double>(totals.spin_energy) * energy_quantum, 4.0);      // L^2 / (2 I) = 16 / 4
+  // densities 7, 8, 9, 8 about 8: ln(7/8) + 8/7 - 1 + ln(9/8) + 8/9 - 1; each is rounded to a double
+  EXPECT_NEAR(static_cast<double>(totals.internal_energy) * energy_quantum, std::log(63.0 / 64.0) + 2.0 / 63.0, 1e-15);
+  // PPs about (2, 1): 1/4 - 1/8 + 1/8; the free ball lies in the middle and spins with 4; the other moves radially
+  EXPECT_EQ(static_cast<double>(totals.angular_momentum[0]) * angular_quantum, 4.25);
   EXPECT_EQ(momentum(totals.momentum[0]), 12.5);
   EXPECT_EQ(momentum(totals.momentum[1]), -3.5);
   EXPECT_EQ(totals.lowest_density, 7.0);
@@ -55,9 +59,20 @@ TEST(Totals, do_not_depend_on_how_many_processes_hold_the_state) {
     EXPECT_TRUE(totals.momentum == whole.momentum && totals.outside_impulse == whole.outside_impulse);
     EXPECT_TRUE(totals.sp_impulse == whole.sp_impulse && totals.mobile_velocity == whole.mobile_velocity);
     EXPECT_TRUE(totals.fluid_energy == whole.fluid_energy && totals.spin_energy == whole.spin_energy);
+    EXPECT_TRUE(totals.internal_energy == whole.internal_energy && totals.angular_momentum == whole.angular_momentum);
     EXPECT_EQ(totals.lowest_density, 7.0);
     EXPECT_EQ(totals.highest_density, 9.0);
   });
+}
+
+TEST(Totals, of_angular_momentum_do_not_depend_on_the_image_of_a_solid) {
+  State<2> state = hand::state();
+  const Totals<2> inside = measure(hand::model(), state, SingleGroup());
+  state.solids[3].momentum = hand::iota(4.0, 2.0);
+  const Totals<2> turned = measure(hand::model(), state, SingleGroup());
+  EXPECT_EQ(static_cast<double>((turned.angular_momentum - inside.angular_momentum)[0]) * angular_quantum, 2.0);
+  state.solids[3].x[0] -= box_quanta;
+  EXPECT_TRUE(measure(hand::model(), state, SingleGroup()).angular_momentum == turned.angular_momentum);
 }
 
 TEST(Totals, of_the_ledger_close_exactly_and_show_a_single_quantum) {

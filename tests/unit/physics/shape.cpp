@@ -238,6 +238,37 @@ TYPED_TEST(WallTest, own_density_goes_from_half_to_full) {
   for (std::size_t i = 1; i < 96; ++i) EXPECT_GE(shape.frozen[i].own_density, shape.frozen[i - 1].own_density);
 }
 
+TYPED_TEST(WallTest, an_end_takes_what_lies_beyond_it) {
+  const double fine = 1.0 / 32.0;
+  FrozenLayer layer{fine, 1024.0};
+  layer.thickness = 3.0;
+  const std::array<double, 2> sides{4.0, 4.0}, spacing{fine, fine};
+  const auto whole = make_wall_piece<2, TypeParam>(1, sides, spacing, layer);
+  const auto ended = make_wall_piece<2, TypeParam>(1, sides, spacing, layer, {0, true, false});
+  const auto mirrored = make_wall_piece<2, TypeParam>(1, sides, spacing, layer, {0, false, true});
+  ASSERT_EQ(ended.frozen.size(), 128u * 128u);
+  const auto at = [](const Shape<2>& shape, int column, int row) { return shape.frozen[128 * row + column]; };
+  for (int row = 0; row < 128; row += 9)
+    for (int column = 0; column < 128; ++column) {
+      const auto point = at(ended, column, row);
+      EXPECT_EQ(point.depth, at(whole, column, row).depth);
+      EXPECT_EQ(point.normal, at(whole, column, row).normal);
+      EXPECT_NEAR(point.own_density, at(mirrored, 127 - column, row).own_density, 1e-9);  // another order of the sum
+      const double continued = at(whole, column, row).own_density;
+      if (column >= 33) {
+        EXPECT_EQ(point.own_density, continued);
+      } else if (column < 30) {
+        EXPECT_LT(point.own_density, continued);
+      }
+    }
+  // The FP at half a spacing from end and face sees a quarter: it is symmetric in the two, and far from one as a plane
+  // surface is from the other.
+  EXPECT_EQ(at(ended, 64, 0).own_density, at(whole, 0, 0).own_density);
+  EXPECT_NEAR(at(ended, 0, 64).own_density, at(whole, 64, 0).own_density, 0.01 * 1024.0);
+  const double face = at(whole, 0, 0).own_density / 1024.0;
+  EXPECT_NEAR(at(ended, 0, 0).own_density / 1024.0, face * face, 0.02);  // exact for a product of profiles
+}
+
 TEST(MakeWallPiece, thin_wall_has_one_middle_sheet_and_sees_both_faces) {
   const auto shape = make_wall_piece<3, WendlandC2>(2, {2 * dx, dx, 3 * dx}, {dx, dx, dx}, space_layer);
   ASSERT_EQ(shape.frozen.size(), 6u);

@@ -14,6 +14,20 @@ TEST(StateEquation, pressure_by_hand) {
   EXPECT_EQ(pressure(8.0, 10.0, 1.0, 0.5), -1.5);
 }
 
+TEST(StateEquation, internal_energy_is_the_work_of_compression) {
+  // Oracle: Simpson's rule over p / rho^2 from rho0 to rho, from the pressure itself.
+  const double rho0 = 9.7, c = 1.3, background = 0.4, rho = 11.2;
+  const int intervals = 200;
+  double work = 0.0;
+  for (int n = 0; n <= intervals; ++n) {
+    const double at = rho0 + (rho - rho0) * n / intervals;
+    const double weight = n == 0 || n == intervals ? 1.0 : n % 2 == 1 ? 4.0 : 2.0;
+    work += weight * pressure(at, rho0, c, background) / (at * at) * (rho - rho0) / (3.0 * intervals);
+  }
+  EXPECT_NEAR(internal_energy(rho, rho0, c, background), work, 1e-10);  // error of the rule: below 1e-11
+  EXPECT_EQ(internal_energy(rho0, rho0, c, background), 0.0);
+}
+
 TEST(StateEquation, volume_terms_by_hand) {
   const auto terms = volume_terms(8.0, 10.0, 1.0, 0.5);  // V^2 = 1/64, p = -3/2
   EXPECT_EQ(terms.v2, 0.015625);

@@ -30,6 +30,11 @@ TEST(SceneDocument, AnAlternativeReplacesTheOther) {
   EXPECT_EQ(scene.fluid.sound_speed.factor, 15.0);
 }
 
+TEST(SceneDocument, TextThatTheLibraryTakesForImpossibleIsAnError) {
+  expect_input_error([] { read("name = \"a\"\n\u03fb = 1\n"); }, {"scene.toml:2", "mend the line"});
+  expect_input_error([] { read("name = \"a\"\n[ = 1\n"); }, {"scene.toml:2", "mend the line"});
+}
+
 TEST(SceneDocument, BadOverridesAreErrors) {
   expect_input_error([] { read(one_disc, {"fluid.spacing"}); }, {"--set: fluid.spacing", "write --set key.path=value"});
   expect_input_error([] { read(one_disc, {"=3"}); }, {"--set: =3", "write --set key.path=value"});

@@ -164,6 +164,9 @@ TEST(SceneModel, RefusesWhatCannotRun) {
   expect_input_error(built({"fluid.rcut=0.1"}), {"fluid.rcut = 0.1", "exceed fluid.spacing = 0.125"});
   expect_input_error(built({"fluid.spacing=0.01"}), {"fluid.rcut = 0.5", "more than 256"});
   expect_input_error(built({"body.0.radius=1.1"}), {"body.0", "2.2 wide", "box side 2"});
+  expect_input_error(built({"body.0.radius=1e20"}), {"body.0", "2e+20 wide", "box side 2"});
+  expect_input_error(built({"body.0.density=1e20"}), {"body.0.density = 1e+20", "PPs", "lower it"});
+  expect_input_error(built({"fluid.spacing=1e-20", "fluid.rcut=3e-20"}), {"fluid.spacing = 1e-20", "can be numbered"});
   expect_input_error(built({"fluid.sound_speed=0.4"}),
                      {"fluid.sound_speed = 0.4", "speed 2"});  // with the rim: 0.5 + 3 x 0.5
   expect_input_error(

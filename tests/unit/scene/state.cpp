@@ -138,6 +138,15 @@ TEST(SceneState, IsTheSameForEveryPartitionInSpace) {
   expect_independent_of_partition<3>(whole, {{{0.5}, {0.3, 0.6}, {0.9}}});
 }
 
+TEST(SceneState, DisorderIsTheSameForEveryPartition) {
+  const Overrides disorder{"fluid.disorder={amplitude=0.25, seed=9}"};
+  const Whole<2> plane(crowded, disorder);
+  // Borders through nodes, between them, and at the reach of a displaced PP.
+  expect_independent_of_partition<2>(plane, {{{0.5 / 60, 10.25 / 60, 0.5}, {}}});
+  expect_independent_of_partition<2>(plane, {{{}, {30.3 / 90, 30.75 / 90, 31.25 / 90}}});
+  expect_independent_of_partition<3>(Whole<3>(crowded_3d, disorder), {{{0.52}, {0.3, 0.6}, {0.9}}});
+}
+
 TEST(SceneState, AnEmptyRegionIsEmpty) {
   Region<2> region;
   region.low = region.high = {{1e15, 1e15}};

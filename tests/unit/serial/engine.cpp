@@ -202,6 +202,34 @@ TEST(SerialEngine, a_galilean_boost_changes_relative_motion_by_rounding_only) {
   EXPECT_GT(largest_x + largest_v, 0.0);
 }
 
+TEST(SerialEngine, a_field_of_force_kicks_each_pp_and_is_counted_exactly) {
+  const std::string start =
+      head("[4.8, 4.8]", "0.3", "11.1111111111", "velocity = [0.01, 0.0]\ndisorder = { amplitude = 0.2, seed = 1 }");
+  const std::string field = "[force]\nfluid = [0.0, 0.001]\nvortices = { amplitude = 0.002, mode = 2 }\n";
+  const std::string late = testing::replaced(start, "steps = 100", "steps = 100\nrelax = 1\nstep = 0.125");
+  const Built<2> driven(late + field), pushed(late + "[force]\nfluid = [0.0, 0.001]\n");
+  SerialEngine<2> a(driven.model, driven.state(), Neighbours::cells),
+      b(pushed.model, pushed.state(), Neighbours::cells);
+  a.step();
+  b.step();
+  EXPECT_EQ(digest_share(a.state()), digest_share(b.state())) << "acts during the relaxation";
+  const FluidParticles<2> before = a.state().fluid;
+  a.step();
+  b.step();
+  Vec<2, Int128> given{};
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double x = 2.0 * before.x(0)[i] / box_quanta, y = 2.0 * before.x(1)[i] / box_quanta;
+    const double value[2] = {unit_circle(x)[1] * unit_circle(y)[0], -unit_circle(x)[0] * unit_circle(y)[1]};
+    for (int axis = 0; axis < 2; ++axis) {
+      const double gained = (a.state().fluid.v(axis)[i] - b.state().fluid.v(axis)[i]) / velocity_quantum;
+      EXPECT_NEAR(gained, 0.002 * 0.125 * value[axis] / velocity_quantum, 0.5 + 1e-4);  // rounded once
+      given[axis] += static_cast<std::int64_t>(gained);
+    }
+  }
+  EXPECT_EQ(a.state().outside_impulse - b.state().outside_impulse, given);
+  EXPECT_EQ(momentum_share(a.state()), a.state().start_momentum + a.state().outside_impulse);
+}
+
 TEST(SerialEngine, a_value_out_of_range_is_reported_and_not_thrown) {
   const Built<2> built(head("[4.8, 4.8]", "0.3", "11.1111111111"));
   State<2> state = built.state();

@@ -1,0 +1,114 @@
+#include "parallel/face_ledger.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace mappm {
+
+namespace {
+
+template <int D>
+struct Body {
+  Vec<D, double> x, v;
+  VolumeTerms<double> volume;
+};
+
+template <int D>
+Body<D> body_of(const Model<D>& model, const FluidParticles<D>& fluid, std::size_t i) {
+  Body<D> body;
+  for (int axis = 0; axis < D; ++axis) {
+    body.x[axis] = fluid.x(axis)[i];
+    body.v[axis] = fluid.v(axis)[i];
+  }
+  body.volume = volume_terms(fluid.density()[i], model.rest_density, 1.0, model.background);
+  return body;
+}
+
+/// Impulse that PP i receives from j, a PP or an FP.
+template <class Kernel, int D, class Beta>
+Vec<D, std::int64_t> impulse_of_pair(const Model<D>& model, const Body<D>& i, const Body<D>& j, Beta&& beta) {
+  const FluidPair<D, double> pair{i.x - j.x, i.v - j.v, i.volume.v2 + j.volume.v2, i.volume.pv2 + j.volume.pv2};
+  const Vec<D, double> r = separation(model.pair, pair.d);
+  return fluid_pair<Kernel, false>(model.pair, pair, r, cut_distance(r), beta(r)).impulse;
+}
+
+template <int D>
+void add(Vec<D, Int128>& sum, const Vec<D, std::int64_t>& impulse, int sign) {
+  for (int axis = 0; axis < D; ++axis) sum[axis] += sign * static_cast<Int128>(impulse[axis]);
+}
+
+}  // namespace
+
+/// Calls visit(j) for every PP, owned or ghost, that may lie within rcut of x.
+template <int D>
+template <class Visit>
+void FaceLedger<D>::for_each_near(const Vec<D, double>& x, Visit&& visit) const {
+  Vec<D, int> first, last;
+  for (int axis = 0; axis < D; ++axis) {
+    const int cell = grid_.coordinate(axis, x[axis]);
+    first[axis] = std::max(0, cell - grid_.margin());
+    last[axis] = std::min(grid_.count(axis) - 1, cell + grid_.margin());
+  }
+  Vec<D, int> row = first;
+  while (row[D - 1] <= last[D - 1]) {
+    const std::size_t cells = grid_.row(row);
+    const std::uint32_t begin = grid_.start(cells + static_cast<std::size_t>(first[0]));
+    const std::uint32_t end = grid_.start(cells + static_cast<std::size_t>(last[0]) + 1);
+    for (std::uint32_t j = begin; j < end; ++j) visit(j);
+    for (int axis = 1; axis < D; ++axis) {
+      if (++row[axis] <= last[axis] || axis == D - 1) break;
+      row[axis] = first[axis];
+    }
+  }
+}
+
+template <int D>
+std::vector<FaceImpulse<D>> FaceLedger<D>::faces(const FluidParticles<D>& fluid,
+                                                 const std::vector<FrozenInStep<D>>& frozen) const {
+  std::map<int, Vec<D, Int128>> from;
+  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
+    for (std::size_t g = 0; g < fluid.size(); ++g) {
+      const Body<D> ghost = body_of(model_, fluid, g);
+      if (region_.contains(ghost.x)) continue;
+      Vec<D, Int128>& sum = from[domains_.owner(ghost.x)];
+      for_each_near(ghost.x, [&](std::size_t i) {
+        const Body<D> own = body_of(model_, fluid, i);
+        if (region_.contains(own.x))
+          add(sum, impulse_of_pair<Kernel>(model_, own, ghost, [](const auto&) { return 1.0; }), 1);
+      });
+    }
+    for (const FrozenInStep<D>& fp : frozen) {
+      const Body<D> point{fp.place.x, fp.place.v, fp.volume};
+      const bool own_point = region_.contains(point.x);
+      const auto beta = [&](const Vec<D, double>& r) {
+        return model_.terms.extrapolated ? no_slip_factor(r, fp.place.normal, fp.depth, model_.no_slip_nearest) : 1.0;
+      };
+      for_each_near(point.x, [&](std::size_t i) {
+        const Body<D> other = body_of(model_, fluid, i);
+        if (region_.contains(other.x) == own_point) return;
+        Vec<D, Int128>& sum = from[domains_.owner(own_point ? other.x : point.x)];
+        add(sum, impulse_of_pair<Kernel>(model_, other, point, beta), own_point ? -1 : 1);
+      });
+    }
+  });
+  std::vector<FaceImpulse<D>> faces;
+  for (const auto& [rank, impulse] : from) faces.push_back({rank, impulse});
+  return faces;
+}
+
+template <int D>
+Vec<D, Int128> FaceLedger<D>::received(const FluidParticles<D>& fluid, const FluidPass<D>& pass,
+                                       const std::vector<FrozenInStep<D>>& frozen,
+                                       const std::vector<NeighbourSums<D>>& frozen_sums) const {
+  Vec<D, Int128> sum{};
+  for (std::size_t i = 0; i < fluid.size(); ++i)
+    if (region_.contains(body_of(model_, fluid, i).x)) add(sum, pass.sums(i).impulse, 1);
+  for (std::size_t k = 0; k < frozen.size(); ++k)
+    if (region_.contains(frozen[k].place.x)) add(sum, frozen_sums[k].impulse, 1);
+  return sum;
+}
+
+template class FaceLedger<2>;
+template class FaceLedger<3>;
+
+}  // namespace mappm

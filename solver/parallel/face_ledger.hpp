@@ -1,0 +1,43 @@
+// The ledger of momentum over the faces of a domain: what its particles received in a step from those of each other
+// domain. Computed outside the pass, from the same law pair by pair, so that the sums of the pass can be held against
+// it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "parallel/domains.hpp"
+#include "parallel/fluid_pass.hpp"
+#include "particles/cell_grid.hpp"
+#include "particles/face_impulse.hpp"
+#include "particles/frozen.hpp"
+
+namespace mappm {
+
+template <int D>
+class FaceLedger {
+ public:
+  /// `grid`: the order of the PPs in the step, owned and ghosts.
+  FaceLedger(const Model<D>& model, const Domains<D>& domains, const Region<D>& region, const CellGrid<D>& grid)
+      : model_(model), domains_(domains), region_(region), grid_(grid) {}
+
+  /// Impulse (iota) that the PPs and FPs in the region received from ghosts, by the rank that owns these, in increasing
+  /// order. Across a periodic border that may be the own rank; what it gives itself adds up to zero.
+  std::vector<FaceImpulse<D>> faces(const FluidParticles<D>& fluid, const std::vector<FrozenInStep<D>>& frozen) const;
+
+  /// Impulse that the pass summed for all PPs and FPs in the region.
+  Vec<D, Int128> received(const FluidParticles<D>& fluid, const FluidPass<D>& pass,
+                          const std::vector<FrozenInStep<D>>& frozen,
+                          const std::vector<NeighbourSums<D>>& frozen_sums) const;
+
+ private:
+  template <class Visit>
+  void for_each_near(const Vec<D, double>& x, Visit&& visit) const;
+
+  const Model<D>& model_;
+  const Domains<D>& domains_;
+  const Region<D>& region_;
+  const CellGrid<D>& grid_;
+};
+
+}  // namespace mappm

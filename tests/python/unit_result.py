@@ -1,0 +1,38 @@
+"""When a case holds, and how the judge then ends. Oracle: each of its parts must hold."""
+
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from verification.result import CaseResult, Exactness
+from verification.solver import ROOT
+
+
+@pytest.mark.parametrize(
+    ("outcome", "defects", "equal", "holds"),
+    [
+        (True, (), None, True),
+        (True, (), True, True),
+        (False, (), True, False),
+        (True, ("one PP too few",), True, False),
+        (True, (), False, False),
+    ],
+)
+def test_a_case_holds_with_all_parts(outcome: bool, defects: tuple[str, ...], equal: bool | None, holds: bool) -> None:
+    outcomes = (SimpleNamespace(holds=True), SimpleNamespace(holds=outcome))
+    matrix = None if equal is None else SimpleNamespace(equal=equal)
+    result = CaseResult(SimpleNamespace(), "quick", {}, outcomes, (), Exactness(1, 1, defects), matrix)
+    assert result.holds == holds
+
+
+def test_the_judge_ends_with_its_verdict(tmp_path: Path) -> None:
+    # A fluid at rest is at rest; one in uniform motion is not, and the case says so.
+    for velocity, code, verdict in (("[0,0]", 0, ", CORRECT"), ("[0.01,0]", 1, ", WRONG")):
+        line = [sys.executable, "-m", "verification", "run", "rest", "--out", str(tmp_path), "--set", "run.steps=10",
+                "--set", f"fluid.velocity={velocity}"]
+        judged = subprocess.run(line, cwd=ROOT, capture_output=True, text=True)
+        assert judged.returncode == code, judged.stderr
+        assert verdict in judged.stdout

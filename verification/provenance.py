@@ -1,0 +1,45 @@
+"""Where the figures of a report come from."""
+
+import hashlib
+import importlib.metadata
+import platform
+import subprocess
+from datetime import UTC, datetime
+from pathlib import Path
+
+from verification.case import cases_folder
+from verification.solver import ROOT, Run
+
+PACKAGES = ("numpy", "h5py", "pyvista", "vtk", "matplotlib", "Jinja2")
+
+
+def _processor() -> str:
+    for line in Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.partition(":")[2].strip()
+    return platform.processor()
+
+
+def provenance(run: Run) -> dict[str, str]:
+    record = run.record
+    return {
+        "commit": record["commit"],
+        "compiler": f"{record['compiler']}, {record['flags']}",
+        "host": f"{record['host']}, {_processor()}",
+        "system": platform.platform(),
+        "Open MPI": subprocess.run(["mpirun", "--version"], capture_output=True, text=True).stdout.splitlines()[0],
+        "Python": ", ".join(
+            [platform.python_version(), *(f"{name} {importlib.metadata.version(name)}" for name in PACKAGES)]
+        ),
+        "date": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
+    }
+
+
+def checksum(file: Path) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def reference_checksums() -> dict[str, str]:
+    """SHA-256 of every file of reference data."""
+    files = [*(ROOT / "reference").rglob("*.csv"), *cases_folder().glob("*/*.csv")]
+    return {str(file.relative_to(ROOT)): checksum(file) for file in sorted(files) if file.is_relative_to(ROOT)}
