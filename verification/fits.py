@@ -45,6 +45,14 @@ def decay_rate(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
     return float(-coefficients[0]), float(np.sqrt(covariance[0, 0]))
 
 
+def minima(time: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Times of the minima of an oscillating series, each from the parabola through its lowest three samples."""
+    lowest = 1 + np.flatnonzero((values[1:-1] < values[:-2]) & (values[1:-1] <= values[2:]))
+    left, here, right = values[lowest - 1], values[lowest], values[lowest + 1]
+    shift = 0.5 * (left - right) / (left - 2 * here + right)
+    return time[lowest] + shift * (time[1] - time[0])
+
+
 @dataclass(frozen=True)
 class Oscillation:
     """exp(-damping t) (a cos(frequency t) + b sin(frequency t)), with the standard errors of the first two."""

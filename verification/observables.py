@@ -13,7 +13,8 @@ from verification.fits import decay_rate, extrapolate
 from verification.flows import amplitudes, initial_flow, viscosity_of
 from verification.solver import Run
 
-SI = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "kg/m3": 1.0, "m/s": 1.0, "GPa": 1e9}  # of the units that scenes of two spheres are written in
+# Units that scenes of two spheres are written in.
+SI = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "kg/m3": 1.0, "m/s": 1.0, "GPa": 1e9}
 
 
 def in_si(quantity: float | str) -> float:

@@ -140,6 +140,8 @@ std::string finish_step(const Model<D>& model, std::uint64_t step, Solid<D>& sol
     total.linear += load.wall.linear;
     total.angular += load.wall.angular;
     outside_impulse += load.wall.linear;
+    if (model.terms.fluid && shape.rotates)
+      total.angular += stress_couple(model.pair.viscosity, shape, rigid_velocity(solid, shape).angular, model.dt);
     if (model.terms.body_force && step >= model.relax)
       for (int axis = 0; axis < D; ++axis) {
         const double impulse = shape.mass * model.solid_acceleration[axis] * model.dt;

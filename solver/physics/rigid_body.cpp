@@ -44,11 +44,11 @@ PlacedFrozen<D> place(const Solid<D>& solid, const RigidVelocity<D>& velocity, c
                       const Vec<D, double>& length) {
   const Vec<D, double> offset = rotate(solid.orientation, frozen.offset);
   PlacedFrozen<D> placed;
-  placed.lever = offset;
   for (int axis = 0; axis < D; ++axis)
     placed.x[axis] = solid.x[axis] + static_cast<double>(to_fixed(offset[axis] / length[axis]));
   placed.v = velocity.linear + rotational_velocity<D>(velocity.angular, offset);
   placed.normal = rotate(solid.orientation, frozen.normal);
+  placed.lever = offset + frozen.depth * placed.normal;
   return placed;
 }
 
@@ -58,6 +58,15 @@ AngularVec<D, Int128> torque_impulse(const Vec<D, double>& lever, const Vec<D, d
   AngularVec<D, Int128> rounded;
   for (int i = 0; i < angular_components<D>; ++i) rounded[i] = to_fixed_wide(torque[i]);
   return rounded;
+}
+
+template <int D>
+AngularVec<D, Int128> stress_couple(double viscosity, const Shape<D>& shape, const AngularVec<D, double>& omega,
+                                    double dt) {
+  const double factor = -2.0 * viscosity * shape.volume * dt / velocity_quantum;
+  AngularVec<D, Int128> couple;
+  for (int i = 0; i < angular_components<D>; ++i) couple[i] = to_fixed_wide(factor * omega[i]);
+  return couple;
 }
 
 template <int D>
@@ -93,6 +102,8 @@ template PlacedFrozen<3> place(const Solid<3>&, const RigidVelocity<3>&, const F
                                const Vec<3, double>&);
 template AngularVec<2, Int128> torque_impulse<2>(const Vec<2, double>&, const Vec<2, double>&);
 template AngularVec<3, Int128> torque_impulse<3>(const Vec<3, double>&, const Vec<3, double>&);
+template AngularVec<2, Int128> stress_couple(double, const Shape<2>&, const AngularVec<2, double>&, double);
+template AngularVec<3, Int128> stress_couple(double, const Shape<3>&, const AngularVec<3, double>&, double);
 template RangeFault advance(Solid<2>&, const Shape<2>&, const SolidImpulse<2>&, double, const Vec<2, double>&);
 template RangeFault advance(Solid<3>&, const Shape<3>&, const SolidImpulse<3>&, double, const Vec<3, double>&);
 

@@ -79,7 +79,9 @@ template <int D>
 RigidVelocity<D> rigid_velocity(const Solid<D>& solid, const Shape<D>& shape);
 
 /// An FP in the frame of the box: position quanta (of the solid's frame; may lie outside the box), velocity, outward
-/// normal, and its lever: the vector to it from the centre of mass, in rcut, before the position is rounded.
+/// normal, and the lever of its force: the vector from the centre of mass to the surface over it, in rcut. The traction
+/// of the fluid acts at the surface; at the FP, deeper by half a spacing and more, its torque would be too small by an
+/// error of first order in the spacing.
 template <int D>
 struct PlacedFrozen {
   Vec<D, double> x, v, normal, lever;
@@ -100,6 +102,14 @@ struct SolidImpulse {
 /// Torque impulse of an impulse (iota) that acts on an FP or contact point at `lever` (rcut) from the centre.
 template <int D>
 AngularVec<D, Int128> torque_impulse(const Vec<D, double>& lever, const Vec<D, double>& impulse);
+
+/// What the torque of the pair law lacks, over `dt`: iota rcut. The law hands on the momentum flux mu grad u, and the
+/// stress of a fluid is mu (grad u + grad u^T). On a rigid body with no slip the second part gives no force, and the
+/// couple mu times the integral of x cross (n cross omega) over its surface, which is -2 mu V omega in plane and space,
+/// whatever the flow. Without it a body would be spun up by a fluid that turns with it.
+template <int D>
+AngularVec<D, Int128> stress_couple(double viscosity, const Shape<D>& shape, const AngularVec<D, double>& omega,
+                                    double dt);
 
 /// Kick and drift of one solid over `dt` (internal units): momentum first, then position by the new velocity.
 /// A fixed solid keeps all, a moving one drifts with its constant momentum. Positions are wrapped into the box. A solid
