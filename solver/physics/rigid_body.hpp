@@ -78,13 +78,15 @@ struct RigidVelocity {
 template <int D>
 RigidVelocity<D> rigid_velocity(const Solid<D>& solid, const Shape<D>& shape);
 
-/// An FP in the frame of the box: position quanta (of the solid's frame; may lie outside the box), velocity, outward
-/// normal, and the lever of its force: the vector from the centre of mass to the surface over it, in rcut. The traction
-/// of the fluid acts at the surface; at the FP, deeper by half a spacing and more, its torque would be too small by an
-/// error of first order in the spacing.
+/// An FP in the frame of the box.
 template <int D>
 struct PlacedFrozen {
-  Vec<D, double> x, v, normal, lever;
+  Vec<D, double> x;       // position quanta, of the solid's frame; may lie outside the box
+  Vec<D, double> v;       // c
+  Vec<D, double> normal;  // outward, of the surface over it
+  /// From the centre of mass to the surface over it, rcut, before the position is rounded. There the traction of the
+  /// fluid acts; at the FP, deeper by half a spacing and more, its torque would be too small in first order of the spacing.
+  Vec<D, double> lever;
 };
 
 /// length: of a position quantum, per axis (PairLaw::length).

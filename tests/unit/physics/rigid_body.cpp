@@ -62,13 +62,13 @@ TEST(Place, by_hand_in_the_plane) {
   Solid<2> solid;
   solid.x = {{box_quanta - 1.0, 100.0}};
   solid.orientation = {{{0.0, 1.0}}};
-  const FrozenParticle<2> frozen{{{0.5, -0.25}}, {{0.0, -1.0}}, 0.1, 0.0};
+  const FrozenParticle<2> frozen{{{0.5, -0.25}}, {{0.0, -1.0}}, 0.125, 0.0};
   const auto placed = place(solid, RigidVelocity<2>{{{1.0, 2.0}}, {{4.0}}}, frozen, plane_length);
   // offset in the box: (1/4, 1/2) -> 2^52 / 16 quanta of 4 and 8; v = V + omega x offset
   EXPECT_EQ(placed.x, (Vec<2, double>{{box_quanta - 1.0 + box_quanta / 16.0, 100.0 + box_quanta / 16.0}}));
   EXPECT_EQ(placed.v, (Vec<2, double>{{1.0 - 2.0, 2.0 + 1.0}}));
   EXPECT_EQ(placed.normal, (Vec<2, double>{{1.0, 0.0}}));
-  EXPECT_EQ(placed.lever, (Vec<2, double>{{0.25, 0.5}}));
+  EXPECT_EQ(placed.lever, (Vec<2, double>{{0.25 + 0.125, 0.5}}));  // to the surface, 1/8 along the normal
 }
 
 TEST(Place, differs_between_frames_by_whole_boxes_only) {
@@ -85,6 +85,43 @@ TEST(Place, differs_between_frames_by_whole_boxes_only) {
   EXPECT_EQ(there.x - here.x, (Vec<3, double>{{box_quanta, 0.0, -box_quanta}}));
   EXPECT_EQ(there.v, here.v);
   EXPECT_EQ(there.normal, here.normal);
+}
+
+/// The couple is mu times the integral over the surface of x cross (n cross omega), summed here over points of a circle
+/// and of a sphere.
+template <int D>
+double couple_over_the_surface(double omega) {
+  const double pi = 3.14159265358979323846, radius = 0.75;
+  const int rings = 400;
+  double sum = 0.0;
+  for (int k = 0; k < rings; ++k) {
+    if constexpr (D == 2) {
+      sum += 2.0 * pi * radius / rings * -radius * omega;  // x cross (n cross omega) = -R omega in the plane
+    } else {
+      const double height = (2.0 * k + 1.0) / rings - 1.0;  // bands of equal area; omega along z
+      sum += 4.0 * pi * radius * radius / rings * radius * (height * height - 1.0) * omega;
+    }
+  }
+  return sum;
+}
+
+template <int D>
+void expect_couple_of_a_ball() {
+  const double pi = 3.14159265358979323846, radius = 0.75, viscosity = 0.3, dt = 0.125, omega = -0.6;
+  Shape<D> shape;
+  shape.volume = D == 2 ? pi * radius * radius : 4.0 / 3.0 * pi * radius * radius * radius;
+  AngularVec<D, double> turning;
+  turning[angular_components<D> - 1] = omega;
+  const auto couple = stress_couple(viscosity, shape, turning, dt);
+  const double expected = viscosity * couple_over_the_surface<D>(omega) * dt;
+  EXPECT_NEAR(static_cast<double>(couple[angular_components<D> - 1]) * velocity_quantum, expected, 1e-5 * expected);
+  EXPECT_GT(expected, 0.0);  // against the rotation
+  for (int i = 0; i + 1 < angular_components<D>; ++i) EXPECT_EQ(couple[i], 0);
+}
+
+TEST(StressCouple, of_a_ball_is_the_integral_over_its_surface) {
+  expect_couple_of_a_ball<2>();
+  expect_couple_of_a_ball<3>();
 }
 
 TEST(TorqueImpulse, by_hand_and_rounded) {
