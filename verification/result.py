@@ -102,6 +102,8 @@ def run_case(case: Case, tier: str, out: Path, ranks: int = 1, done: Done | None
 
 def run_with(case: Case, out: Path, overrides: tuple[str, ...], ranks: int = 1) -> CaseResult:
     """The scene alone with overrides of the user: no levels, nothing varied, so the goals alone decide."""
-    alone = replace(case, levels=(Level(overrides, "quick"),), vary=(), beside=(), equivalence=None, stalls="")
+    observables = tuple(replace(observable, order=None) for observable in case.observables)  # one level has no order
+    alone = replace(case, observables=observables, levels=(Level(overrides, "quick"),), vary=(), beside=(),
+                    equivalence=None, stalls="")
     runs = run_jobs([Job(alone, overrides)], out, Options(ranks=ranks), 1)
     return judged(alone, "quick", {overrides: finished for (_, overrides), finished in runs.items()})

@@ -91,11 +91,13 @@ def test_a_fault_is_caught_by_a_failure_alone(monkeypatch: pytest.MonkeyPatch) -
     results = {"passes": Result(False, False, "", 1.0), "trouble": Result(False, True, "did not end", 1.0),
                "fails": Result(True, False, "wrong", 1.0)}
     monkeypatch.setattr("tests.mutation.__main__.run_detector", lambda detector, *_: results[detector.text])
-    survivor = hunt(replace(SIGN, caught_by=("passes", "trouble")), results)
+    survivor = hunt(replace(SIGN, caught_by=("passes", "trouble")), results | {"trouble": results["passes"]})
     assert not survivor.caught
     assert survivor.message == "passes: passed; trouble: did not end"
-    outcome = hunt(replace(SIGN, caught_by=("passes", "fails")), results)
+    sound = results | {"fails": results["passes"]}  # as it ends without the fault
+    outcome = hunt(replace(SIGN, caught_by=("passes", "fails")), sound)
     assert (outcome.detector, outcome.message, outcome.seconds) == ("fails", "wrong", 2.0)
+    assert not hunt(replace(SIGN, caught_by=("fails",)), results).caught  # it fails without the fault, too
 
 
 class Script(Detector):

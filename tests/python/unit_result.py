@@ -7,7 +7,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from verification.result import CaseResult, Exactness
+from verification.case import find_case
+from verification.result import CaseResult, Exactness, run_with
 from verification.solver import ROOT
 
 
@@ -26,6 +27,14 @@ def test_a_case_holds_with_all_parts(outcome: bool, defects: tuple[str, ...], eq
     matrix = None if equal is None else SimpleNamespace(equal=equal)
     result = CaseResult(SimpleNamespace(), "quick", {}, outcomes, (), Exactness(1, 1, defects), matrix)
     assert result.holds == holds
+
+
+def test_a_scene_run_alone_is_asked_for_no_order(tmp_path: Path) -> None:
+    case = find_case("shear_wave")
+    assert any(observable.order for observable in case.observables)
+    result = run_with(case, tmp_path, ("run.step_factor=1.0",))
+    assert result.holds, "\n".join(result.lines)
+    assert all(outcome.convergence_verdict == "" for outcome in result.outcomes)
 
 
 def test_the_judge_ends_with_its_verdict(tmp_path: Path) -> None:
