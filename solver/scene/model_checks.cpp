@@ -188,15 +188,17 @@ std::vector<std::string> scene_warnings(const Scene& scene, const Model<D>& mode
   const bool meeting = std::count_if(scene.bodies.begin(), scene.bodies.end(),
                                      [](const BodyScene& body) { return body.motion == Motion::free; }) > 0 &&
                        (scene.bodies.size() > 1 || scene.bodies[0].positions.size() > 1);
-  if (meeting && !model.terms.contact)
-    lines.push_back("[contact] is missing: solids that meet pass through each other");
+  if (meeting && !model.terms.contact && !scene.contact.declared)
+    lines.push_back("[contact] is missing: solids that meet pass through each other; model = \"none\" says so");
   if (!model.terms.fluid) return lines;
 
   const double support = 1.0 / model.spacing;
   if (support < least_support || support > most_support)
     lines.push_back(fmt::format("fluid.rcut: {:.3g} spacings; errors are known for {} to {}", support, least_support,
                                 most_support));
-  const double speed = std::max(largest_declared_speed(scene), scene.fluid.sound_speed.velocity);
+  // A stream in which nothing stands is a matter of the frame.
+  const double stream = scene.bodies.empty() ? norm(scene.fluid.velocity) : 0.0;
+  const double speed = std::max(largest_declared_speed(scene) - stream, scene.fluid.sound_speed.velocity);
   if (speed > largest_mach * model.units.velocity)
     lines.push_back(
         fmt::format("fluid.sound_speed: {:.6g} is less than ten times the speed {:.6g}: the fluid is "

@@ -84,6 +84,7 @@ void read_fluid(const Fields& table, const Triple& box, FluidScene& fluid) {
 
 ContactScene read_contact(const Fields& table) {
   ContactScene contact;
+  contact.declared = true;
   contact.model = table.choice<ContactModel>(
       "model", {{"none", ContactModel::none}, {"linear", ContactModel::linear}, {"hertz", ContactModel::hertz}});
   if (contact.model == ContactModel::linear)

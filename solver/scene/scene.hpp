@@ -83,6 +83,7 @@ struct BodyScene {
 };
 
 struct ContactScene {
+  bool declared = false;  // the table is there, if only to say "none"
   ContactModel model = ContactModel::none;
   double stiffness = 0.0;    // linear: k_n, N/m
   double young = 0.0;        // hertz: Young's modulus, Pa

@@ -62,10 +62,10 @@ TEST(Frozen, an_impulse_on_one_turns_its_body_by_lever_cross_impulse) {
   SolidImpulse<2> load;
   add_frozen_load(frozen[0], {{8, 3}}, load);
   EXPECT_TRUE((load.linear == Vec<2, Int128>{{8, 3}}));
-  EXPECT_TRUE(load.angular[0] == -4);  // 0 * 3 - (1/2) 8
+  EXPECT_TRUE(load.angular[0] == -8);  // lever to the surface, (0, 1): 0 * 3 - 1 * 8
   add_frozen_load(frozen[1], {{0, 16}}, load);
   EXPECT_TRUE((load.linear == Vec<2, Int128>{{8, 19}}));
-  EXPECT_TRUE(load.angular[0] == -8);  // at (-1/4, 0): -(1/4) 16
+  EXPECT_TRUE(load.angular[0] == -24);  // surface at (-1, 0): -1 * 16
 }
 
 TEST(Frozen, torque_in_space_by_hand) {
@@ -76,7 +76,7 @@ TEST(Frozen, torque_in_space_by_hand) {
   place_frozen(model, solid_in_step(model, solid), 0, Region<3>::whole_box(), frozen);
   SolidImpulse<3> load;
   add_frozen_load(frozen.at(0), {{5, 8, 16}}, load);
-  EXPECT_TRUE((load.angular == AngularVec<3, Int128>{{0, -8, 4}}));  // (1/2, 0, 0) x (5, 8, 16)
+  EXPECT_TRUE((load.angular == AngularVec<3, Int128>{{0, -16, 8}}));  // lever to the surface, (1, 0, 0) x (5, 8, 16)
 }
 
 TEST(Frozen, density_is_the_sum_and_its_own_bodys_share) {
