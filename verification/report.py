@@ -21,7 +21,7 @@ from verification.runner import Job, cores, jobs_of, run_jobs
 from verification.solver import ROOT, Options, Run
 
 SHOWN = "gas_solid_small"
-STEPS = {"quick": 20_000, "full": 60_000}  # of the long run
+STEPS = {"quick": 8_000, "full": 60_000}  # of the long run
 PUBLISHED = ROOT / "reports" / "published"
 STORED = {"mutation": "mutation.json", "robustness": "robustness.json"}  # made by commands of their own, kept in PUBLISHED
 

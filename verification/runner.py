@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import shutil
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -65,7 +66,9 @@ def run_jobs(jobs: list[Job], out: Path, options: Options, workers: int, done: D
     def one(job: Job) -> Run:
         nonlocal behind
         chosen = Options(ranks=options.ranks, overrides=job.overrides + options.overrides)
-        finished = run(job.case.file, out / job.case.name / job.folder_name, chosen)
+        folder = out / job.case.name / job.folder_name
+        shutil.rmtree(folder, ignore_errors=True)  # snapshots of an earlier run would be read as of this one
+        finished = run(job.case.file, folder, chosen)
         with lock:
             behind += job.weight * job.case.cost
             done(job, behind / total)
