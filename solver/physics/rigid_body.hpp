@@ -85,7 +85,8 @@ struct PlacedFrozen {
   Vec<D, double> v;       // c
   Vec<D, double> normal;  // outward, of the surface over it
   /// From the centre of mass to the surface over it, rcut, before the position is rounded. There the traction of the
-  /// fluid acts; at the FP, deeper by half a spacing and more, its torque would be too small in first order of the spacing.
+  /// fluid acts; at the FP, deeper by half a spacing and more, its torque would be too small in first order of the
+  /// spacing.
   Vec<D, double> lever;
 };
 
