@@ -83,6 +83,10 @@ class Outcome:
         return self.convergence.order
 
     @property
+    def order_text(self) -> str:
+        return "none: not monotonic" if math.isnan(self.order) else f"{self.order:.2f}"
+
+    @property
     def convergence_verdict(self) -> str:
         """Empty where the manifest asks for none."""
         if self.observable.order is None:
@@ -127,7 +131,7 @@ class Outcome:
         )
         text += f": {self.reason}" if self.reason else f" by {basis}"
         if self.convergence_verdict:
-            text += f"; {self.convergence_verdict}, observed order {self.order:.2f}"
+            text += f"; {self.convergence_verdict}, observed order {self.order_text}"
             if observable.order:
                 text += f" in [{observable.order[0]:g}, {observable.order[1]:g}]"
         return text + ")"

@@ -21,6 +21,10 @@ class Convergence:
     richardson: float  # value extrapolated to h = 0; NaN where the order is
     gci: float  # 95 % bound of the error of the finest level, absolute
 
+    @property
+    def monotonic(self) -> bool:
+        return not math.isnan(self.order)
+
 
 def observed_order(h: list[float], values: list[float]) -> float:
     """Of the three finest levels; NaN where the values do not approach a limit monotonically."""
