@@ -9,7 +9,7 @@ from verification.case import Case, Level
 from verification.conservation import Conservation, conservation, defect_line, totals
 from verification.equivalence import Matrix, run_matrix
 from verification.judge import Outcome, beside, judge
-from verification.runner import Done, Job, cores, jobs_of, run_jobs
+from verification.runner import Job, cores, jobs_of, run_jobs
 from verification.solver import Options, Run, run
 
 Runs = dict[tuple[str, ...], Run]
@@ -85,9 +85,8 @@ def judged(case: Case, tier: str, runs: Runs, bits: tuple[Matrix, Conservation] 
     return CaseResult(case, tier, runs, outcomes, others, exactness(runs), *(bits or ()))
 
 
-def run_case(case: Case, tier: str, out: Path, ranks: int = 1, done: Done | None = None, workers: int | None = None,
-             say: Callable[[str], None] = print) -> CaseResult:
-    """All that the manifest asks for, below out/NAME. `done` is told of every run that ends."""
+def run_case(case: Case, tier: str, out: Path, ranks: int, say: Callable[[str], None]) -> CaseResult:
+    """All that the manifest asks for, below out/NAME. `say` is told of every run that ends."""
     started = time.monotonic()
 
     def told(job: Job, share: float) -> None:
@@ -95,7 +94,7 @@ def run_case(case: Case, tier: str, out: Path, ranks: int = 1, done: Done | None
         say(f"{case.name}: {job.label}: done; {left:.0f} s to go")
 
     jobs = jobs_of(case, tier)
-    runs = run_jobs(jobs, out, Options(ranks=ranks), workers or cores(), done or told)
+    runs = run_jobs(jobs, out, Options(ranks=ranks), cores(), told)
     bits = run_bits(case, out, say) if case.equivalence is not None else None
     return judged(case, tier, {overrides: finished for (_, overrides), finished in runs.items()}, bits)
 
