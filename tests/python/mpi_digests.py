@@ -13,6 +13,7 @@ from verification.compare import compare_runs
 from verification.series import Table, read_table
 from verification.solver import ROOT, Options, Run, run
 
+SCENES = Path(__file__).parent / "scenes"
 STEPS = 1000
 
 

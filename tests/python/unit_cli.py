@@ -125,7 +125,10 @@ def test_the_judge_lists_and_runs_cases(tmp_path: Path) -> None:
     assert {line.split()[0] for line in listed.stdout.splitlines()} >= {"gas_solid_small", "rest", "sphere_array"}
     judged = verification("run", "rest", "--out", str(tmp_path), "--set", "run.steps=10")
     assert judged.returncode == 0, judged.stderr
-    assert judged.stdout == "max(|v|) / c = 0 +- 0 (reference 0 +- 0, error 0, CORRECT)\n"
+    assert judged.stdout.splitlines() == [
+        "max(|v|) / c = 0 +- 0 (reference 0 +- 0, error 0, CORRECT by goal 0)",
+        "mass and momentum: EXACT at 1 samples of 1 runs",
+    ]
     assert verification("run", "nothing").returncode != 0
 
 
