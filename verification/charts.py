@@ -18,6 +18,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (after the choice of a backend wi
 
 STYLE = {"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.3,
          "svg.fonttype": "path", "svg.hashsalt": "mappm"}
+MOST_VECTOR_POINTS = 300  # of a curve; those with more are drawn as pixels
 BLUE, GREEN, RED, GREY, DARK = "#1f5a96", "#17663a", "#b00020", "#888888", "#333333"
 
 
@@ -131,6 +132,8 @@ def draw(chart: Chart, file: Path) -> None:
                 axes.errorbar(curve.x, curve.y, yerr=curve.error, **style)
             else:
                 axes.plot(curve.x, curve.y, linestyle="--" if curve.reference else "-", linewidth=1.3, **style)
+        for line in axes.get_lines():  # thousands of points would make a page of many megabytes
+            line.set_rasterized(len(line.get_xdata()) > MOST_VECTOR_POINTS)
         if chart.log:
             axes.set_yscale("log")
         axes.set_title(chart.title, fontsize=10)
