@@ -11,7 +11,7 @@ def body_work(run: Run) -> np.ndarray:
     The momentum that the forces give in an interval times the mean velocity of what they act on.
     """
     series, scene = run.series, run.scene
-    mass, solid_mass = masses(run)
+    mass, solid_mass = _masses(run)
     work = np.zeros(len(series))
     for axis, name in enumerate("xyz"[: len(scene["box"]["size"])]):
         fluid = scene["force"]["fluid"][axis] * mass
@@ -22,7 +22,7 @@ def body_work(run: Run) -> np.ndarray:
     return work
 
 
-def masses(run: Run) -> tuple[float, float]:
+def _masses(run: Run) -> tuple[float, float]:
     """(of all PPs, of all free discs or spheres), in the scene's units."""
     fluid, series = run.scene["fluid"], run.series
     box = float(np.prod(run.scene["box"]["size"]))

@@ -106,3 +106,8 @@ def decay_chart(run: Run) -> Chart:
     exact = Curve("exact", fine, np.exp(-viscosity_of(run) * flow.eigenvalue * fine), reference=True)
     measured = Curve("measured", time, amplitude, points=True)
     return Chart("Amplitude of the flow", "time", "u / U", (exact, measured), log=True)
+
+
+def decay_charts(run: Run) -> list[Chart]:
+    """All that a case of nothing but a decaying flow draws."""
+    return [decay_chart(run)]

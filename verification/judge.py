@@ -6,10 +6,12 @@ uncertainties; 95 % bounds are halved. Where the reference is 0 the observable i
 is the goal. Where a manifest offers no source of u_num, the goal alone decides, and the line says so.
 """
 
+import functools
 import importlib.util
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
@@ -140,9 +142,12 @@ class Outcome:
 def case_module(case: Case) -> ModuleType | None:
     """measure.py in the folder of the case, if it has one."""
     file = case.file.parent / "measure.py"
-    if not file.exists():
-        return None
-    spec = importlib.util.spec_from_file_location(f"case_{case.name}", file)
+    return _loaded(file) if file.exists() else None
+
+
+@functools.cache
+def _loaded(file: Path) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(f"case_{file.parent.name}", file)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

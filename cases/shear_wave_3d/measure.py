@@ -1,9 +1,5 @@
-"""What a decaying shear wave has to show."""
+"""What the report draws; the decay itself is measured by verification/observables.py."""
 
-from verification.curve import Chart
-from verification.flows import decay_chart
-from verification.solver import Run
+from verification.flows import decay_charts as curves
 
-
-def curves(run: Run) -> list[Chart]:
-    return [decay_chart(run)]
+__all__ = ["curves"]
