@@ -13,17 +13,6 @@ from verification.fits import decay_rate, extrapolate
 from verification.flows import amplitudes, initial_flow, viscosity_of
 from verification.solver import Run
 
-# Units that scenes of two spheres are written in.
-SI = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "kg/m3": 1.0, "m/s": 1.0, "GPa": 1e9}
-
-
-def in_si(quantity: float | str) -> float:
-    """A number of a scene, or a text such as "10 mm"."""
-    if isinstance(quantity, (int, float)):
-        return float(quantity)
-    number, _, unit = quantity.partition(" ")
-    return float(number) * SI[unit]
-
 # A drag counts when the force of the fluid on the solid balances the body force, and the velocity has settled, to this.
 SETTLED = 0.005
 

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from reference.scene import in_si
 from verification.curve import Chart, Curve
-from verification.observables import Measured, in_si
+from verification.observables import Measured
 from verification.series import read_table
 from verification.solver import Run
 
