@@ -6,33 +6,49 @@ import tempfile
 import textwrap
 from pathlib import Path
 
-from verification.case import TIERS, all_cases, find_case
+from verification.case import TIERS, Case
 from verification.compare import compare, explain
 from verification.errors import CaseError, SolverError
+from verification.manifest import all_cases, find_cases
 from verification.result import run_case, run_with
 from verification.solver import ROOT, Options, run
 
 
+SKIPPED_CODE = 77  # what ctest takes for skipped
+
+
 def list_cases() -> int:
     for case in all_cases():
-        print(f"{case.name:20} {case.tier:6} {case.cost:6g} s  {textwrap.shorten(case.purpose, 90, placeholder=' ...')}")
+        print(f"{case.name:28} {case.tier:6} {case.cost:6g} s  {textwrap.shorten(case.purpose, 90, placeholder=' ...')}")
     return 0
 
 
-def run_one(arguments: argparse.Namespace) -> int:
-    case = find_case(arguments.case)
+def _run_alone(case: Case, folder: Path, arguments: argparse.Namespace) -> None:
+    """A case that judges nothing: runs its scene."""
+    overrides = case.base + tuple(arguments.set)
+    finished = run(case.file, folder / case.name, Options(ranks=arguments.ranks, overrides=overrides))
+    print(f"{case.name}: ran to its end; its manifest names no observable. Series in {finished.folder}/series.csv")
+
+
+def run_named(arguments: argparse.Namespace) -> int:
+    """The case, or all its points of the tier. Returns 0, 1 where something does not hold, else 77 where something was skipped."""
+    found = find_cases(arguments.case)
     folder = arguments.out or ROOT / "runs"
-    overrides = tuple(arguments.set)
-    if not case.judged:
-        finished = run(case.file, folder / case.name, Options(ranks=arguments.ranks, overrides=overrides))
-        print(f"{case.name}: ran to its end; its manifest names no observable. Series in {finished.folder}/series.csv")
-        return 0
-    if overrides:
-        result = run_with(case, folder, overrides, arguments.ranks)
-    else:
-        result = run_case(case, arguments.tier, folder, arguments.ranks, say=lambda text: print(text, file=sys.stderr))
-    print("\n".join(result.lines))
-    return 0 if result.holds else 1
+    if len(found) > 1:
+        found = [case for case in found if arguments.tier == "full" or case.tier == "quick"]
+    results = []
+    for case in found:
+        if not case.judged:
+            _run_alone(case, folder, arguments)
+            continue
+        if arguments.set:
+            results.append(run_with(case, folder, tuple(arguments.set), arguments.ranks))
+        else:
+            results.append(run_case(case, arguments.tier, folder, arguments.ranks, say=lambda text: print(text, file=sys.stderr)))
+        print("\n".join(f"{case.name}: {line}" if len(found) > 1 else line for line in results[-1].lines), flush=True)
+    if not all(result.holds for result in results):
+        return 1
+    return SKIPPED_CODE if any(result.skipped for result in results) else 0
 
 
 def compare_bits(scene: Path, ranks: list[int], steps: int | None, every: int | None, build: Path | None) -> int:
@@ -62,7 +78,7 @@ def _parser() -> argparse.ArgumentParser:
     commands.add_parser("list", help="the cases, their tier and their cost in core-seconds")
 
     one = commands.add_parser("run", help="run a case and print a line an observable")
-    one.add_argument("case", help="name of a folder of cases/, or the path of a scene")
+    one.add_argument("case", help="name of a folder of cases/, CASE.POINT for one of its points, or the path of a scene")
     one.add_argument("--set", metavar="KEY=VALUE", action="append", default=[],
                      help="override a key of the scene: then it runs alone, without levels, and the goals alone decide")
     one.add_argument("--tier", choices=TIERS, default="quick", help="full adds the levels that take long")
@@ -89,7 +105,7 @@ def main() -> int:
         case "list":
             return list_cases()
         case "run":
-            return run_one(arguments)
+            return run_named(arguments)
         case "compare-bits":
             return compare_bits(arguments.scene, arguments.ranks, arguments.steps, arguments.every, arguments.build)
         case "report":

@@ -3,13 +3,14 @@
 import json
 from pathlib import Path
 
+from verification.judge import SKIPPED
 from verification.result import CaseResult
 
 
 def errors_of(results: list[CaseResult]) -> dict[str, dict]:
     """{"case: symbol": {error, goal, uncertainty, value, verdict}}, relative as in the verdicts."""
     return {
-        f"{result.case.name}: {outcome.observable.symbol}": {
+        f"{result.case.name}: {outcome.observable.against}": {
             "value": outcome.measured.value,
             "error": outcome.error,
             "uncertainty": outcome.uncertainty,
@@ -18,6 +19,7 @@ def errors_of(results: list[CaseResult]) -> dict[str, dict]:
         }
         for result in results
         for outcome in result.outcomes
+        if outcome.verdict != SKIPPED
     }
 
 

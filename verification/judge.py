@@ -18,11 +18,11 @@ import numpy as np
 
 from verification.case import Case, Observable, Vary
 from verification.errors import CaseError
-from verification.ladder import SAFETY, Convergence, converge, error_order
+from verification.ladder import SAFETY, Convergence, converge, error_order, extrapolated
 from verification.observables import OBSERVABLES, Measured
 from verification.solver import Run
 
-CORRECT, WRONG, OPEN = "CORRECT", "WRONG", "NOT ACCEPTED"
+CORRECT, WRONG, OPEN, SKIPPED = "CORRECT", "WRONG", "NOT ACCEPTED", "SKIPPED"
 CONVERGING, NOT_CONVERGING, STALLED = "CONVERGING", "NOT CONVERGING", "STALLED"
 COVERAGE = 2.0  # k
 
@@ -70,8 +70,15 @@ class Outcome:
         return min(self.observable.goal, COVERAGE * self.uncertainty)
 
     @property
+    def objection(self) -> str:
+        """Why neither number may be held against the other, if so."""
+        return "; ".join(filter(None, (self.measured.objection, self.observable.unusable)))
+
+    @property
     def verdict(self) -> str:
-        if self.measured.objection:
+        if self.observable.skipped:
+            return SKIPPED
+        if self.objection:
             return OPEN
         return CORRECT if abs(self.error) <= self.tolerance else WRONG
 
@@ -91,14 +98,15 @@ class Outcome:
     @property
     def convergence_verdict(self) -> str:
         """Empty where the manifest asks for none."""
-        if self.observable.order is None:
+        if self.observable.order is None or self.verdict == SKIPPED:
             return STALLED if self.stalls and len(self.levels) > 2 else ""
         lowest, highest = self.observable.order
         return CONVERGING if lowest <= self.order <= highest else NOT_CONVERGING
 
     @property
     def holds(self) -> bool:
-        return self.verdict == CORRECT and self.convergence_verdict != NOT_CONVERGING
+        """Nothing speaks against it. What was skipped neither passes nor fails."""
+        return self.verdict in (CORRECT, SKIPPED) and self.convergence_verdict != NOT_CONVERGING
 
     def in_words(self, value: float) -> str:
         return f"{100 * value:.2g} %" if self.observable.reference else f"{value:.2g}"
@@ -111,7 +119,9 @@ class Outcome:
     def reason(self) -> str:
         """Of a verdict other than CORRECT."""
         if self.verdict == OPEN:
-            return self.measured.objection
+            return self.objection
+        if self.verdict == SKIPPED:
+            return self.observable.skipped
         if self.verdict == CORRECT:
             return ""
         if math.isnan(self.error):
@@ -206,7 +216,19 @@ def judge(case: Case, tier: str, runs: dict[tuple[str, ...], Run]) -> list[Outco
         outcomes.append(
             Outcome(observable, levels[-1], sources, tuple(heights), tuple(levels), convergence, case.stalls)
         )
+        if observable.extrapolated is not None:
+            outcomes.append(_at_zero(outcomes[-1]))
     return outcomes
+
+
+def _at_zero(finest: Outcome) -> Outcome:
+    """The value extrapolated over the levels as an outcome of its own, with its own goal."""
+    found = extrapolated(list(finest.spacings), [level.value for level in finest.levels])
+    objection = "; ".join(dict.fromkeys(filter(None, (level.objection for level in finest.levels))))
+    observable = replace(finest.observable, symbol=f"{finest.observable.symbol}, dx to 0 ({found.how})",
+                         goal=finest.observable.extrapolated, order=None, extrapolated=None)
+    sources = {name: value for name, value in finest.sources.items() if name != "resolution"}
+    return Outcome(observable, Measured(found.value, 0.0, objection), sources | {"extrapolation": found.uncertainty})
 
 
 def beside(case: Case, runs: dict[tuple[str, ...], Run]) -> list[tuple[str, Outcome]]:

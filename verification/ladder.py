@@ -1,7 +1,7 @@
 """Grid convergence: observed order, Richardson's value and the grid convergence index.
 
 Celik, Ghia, Roache, Freitas, Coleman and Raad, J. Fluids Eng. 130, 2008, 078001; Roache, J. Fluids Eng. 116, 1994, 405-413.
-Levels run from coarse to fine; h is what is refined, the spacing or the step.
+Eca and Hoekstra, J. Comput. Phys. 262, 2014, 104-130. Levels run from coarse to fine; h is what is refined, the spacing or the step.
 """
 
 import math
@@ -60,3 +60,36 @@ def converge(h: list[float], values: list[float]) -> Convergence:
     used = min(max(order, LOWEST_ORDER), HIGHEST_ORDER)
     richardson = values[-1] + (values[-1] - values[-2]) / (ratio**order - 1)
     return Convergence(order, richardson, SAFETY * change / (ratio**used - 1))
+
+
+@dataclass(frozen=True)
+class Extrapolated:
+    """Value at h = 0 with its standard uncertainty, absolute, and in words how it was made."""
+
+    value: float
+    uncertainty: float
+    how: str
+
+
+def _fitted(h: np.ndarray, values: np.ndarray, order: int) -> tuple[float, float]:
+    """(a, its standard error) of values = a + b h^order, by least squares."""
+    basis = np.column_stack([np.ones_like(h), h**order])
+    coefficients, *_ = np.linalg.lstsq(basis, values, rcond=None)
+    variance = np.sum((values - basis @ coefficients) ** 2) / (len(h) - 2)
+    return float(coefficients[0]), float(np.sqrt(variance * np.linalg.inv(basis.T @ basis)[0, 0]))
+
+
+def extrapolated(h: list[float], values: list[float]) -> Extrapolated:
+    """At least three levels. Richardson's value where they converge with an order that can be trusted; else, as scattered
+    levels have none, a + b h or a + b h^2, whichever fits all of them better."""
+    found = converge(h, values)
+    if LOWEST_ORDER <= found.order <= HIGHEST_ORDER:
+        correction = abs(found.richardson - values[-1])
+        second = values[-1] + (values[-1] - values[-2]) / ((h[-2] / h[-1]) ** 2 - 1)
+        spread = max((SAFETY - 1) * correction, abs(found.richardson - second))
+        return Extrapolated(found.richardson, spread / 2, f"Richardson, order {found.order:.2f}")
+    fits = {order: _fitted(np.array(h), np.array(values), order) for order in (1, 2)}
+    best = min(fits, key=lambda order: fits[order][1])
+    value, error = fits[best]
+    other = fits[3 - best][0]
+    return Extrapolated(value, math.hypot(error, (value - other) / 2), f"least squares, order {best}")

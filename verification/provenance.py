@@ -7,7 +7,7 @@ import subprocess
 from datetime import UTC, datetime
 from pathlib import Path
 
-from verification.case import cases_folder
+from verification.manifest import cases_folder
 from verification.solver import ROOT, Run
 
 PACKAGES = ("numpy", "h5py", "pyvista", "vtk", "matplotlib", "Jinja2")

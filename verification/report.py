@@ -9,13 +9,15 @@ import time
 from datetime import timedelta
 from pathlib import Path
 
-from verification.case import Case, all_cases, find_case
+from verification.case import Case
 from verification.figures import CaseFigures, case_figures, shown_figures, suite_figures
 from verification.history import changes, errors_of, read_history
-from verification.judge import CORRECT
+from verification.judge import CORRECT, SKIPPED
+from verification.manifest import all_cases, find_case
 from verification.page import write_page, write_summary
 from verification.progress import Progress
 from verification.provenance import checksum, provenance, reference_checksums
+from verification.references import run_all_live
 from verification.result import CaseResult, judged, run_bits
 from verification.runner import Job, cores, jobs_of, run_jobs
 from verification.solver import ROOT, Options, Run
@@ -46,14 +48,17 @@ def _run_all(progress: Progress, cases: list[Case], tier: str, folder: Path) -> 
 
 def _judge_all(progress: Progress, cases: list[Case], tier: str, folder: Path) -> list[CaseResult]:
     """Failures first."""
-    runs = _run_all(progress, cases, tier, folder)
+    found = _run_all(progress, cases, tier, folder)
+    runs = {case.name: {key: run for (name, key), run in found.items() if name == case.name} for case in cases}
+    with progress.stage("reference codes") as say:
+        live = run_all_live(cases, tier, runs, folder, say)
     results = []
     for case in cases:
         bits = None
         if case.equivalence is not None:
             with progress.stage(f"bits of {case.name}") as say:
                 bits = run_bits(case, folder, say)
-        results.append(judged(case, tier, {key: run for (name, key), run in runs.items() if name == case.name}, bits))
+        results.append(judged(case, tier, runs[case.name], bits, live.get(case.name)))
     return sorted(results, key=lambda result: result.holds)
 
 
@@ -104,7 +109,7 @@ def write_report(tier: str, out: Path, publish: bool) -> int:
     runs = out / "runs"
     runs.mkdir(parents=True)
     cases = _cases(tier)
-    progress = Progress(stages=4 + sum(case.equivalence is not None for case in cases))
+    progress = Progress(stages=5 + sum(case.equivalence is not None for case in cases))
     results = _judge_all(progress, cases, tier, runs)
     shown = progress.run(find_case(SHOWN).file, runs / SHOWN / "shown", Options(ranks=2, steps=STEPS[tier]), STEPS[tier],
                          f"{SHOWN}, P=2")

@@ -8,7 +8,8 @@ from pathlib import Path
 from verification.case import Case, Level
 from verification.conservation import Conservation, conservation, defect_line, totals
 from verification.equivalence import Matrix, run_matrix
-from verification.judge import Outcome, beside, judge
+from verification.judge import SKIPPED, Outcome, beside, judge
+from verification.references import LiveRun, resolved, run_live
 from verification.runner import Job, cores, jobs_of, run_jobs
 from verification.solver import Options, Run, run
 
@@ -40,6 +41,11 @@ class CaseResult:
     exact: Exactness
     matrix: Matrix | None = None
     faces: Conservation | None = None
+    live: LiveRun | None = None
+
+    @property
+    def skipped(self) -> tuple[Outcome, ...]:
+        return tuple(outcome for outcome in self.outcomes if outcome.verdict == SKIPPED)
 
     @property
     def holds(self) -> bool:
@@ -80,9 +86,11 @@ def run_bits(case: Case, out: Path, say: Callable[[str], None]) -> tuple[Matrix,
     return matrix, conservation(run(case.file, out / case.name / "faces", options))
 
 
-def judged(case: Case, tier: str, runs: Runs, bits: tuple[Matrix, Conservation] | None = None) -> CaseResult:
-    outcomes, others = tuple(judge(case, tier, runs)), tuple(beside(case, runs))
-    return CaseResult(case, tier, runs, outcomes, others, exactness(runs), *(bits or ()))
+def judged(case: Case, tier: str, runs: Runs, bits: tuple[Matrix, Conservation] | None = None,
+           live: LiveRun | None = None) -> CaseResult:
+    known = resolved(case, live.result if live else None)
+    outcomes, others = tuple(judge(known, tier, runs)), tuple(beside(known, runs))
+    return CaseResult(known, tier, runs, outcomes, others, exactness(runs), *(bits or (None, None)), live)
 
 
 def run_case(case: Case, tier: str, out: Path, ranks: int, say: Callable[[str], None]) -> CaseResult:
@@ -96,13 +104,16 @@ def run_case(case: Case, tier: str, out: Path, ranks: int, say: Callable[[str], 
     jobs = jobs_of(case, tier)
     runs = run_jobs(jobs, out, Options(ranks=ranks), cores(), told)
     bits = run_bits(case, out, say) if case.equivalence is not None else None
-    return judged(case, tier, {overrides: finished for (_, overrides), finished in runs.items()}, bits)
+    own = {overrides: finished for (_, overrides), finished in runs.items()}
+    return judged(case, tier, own, bits, run_live(case, tier, own, out) if case.live else None)
 
 
 def run_with(case: Case, out: Path, overrides: tuple[str, ...], ranks: int = 1) -> CaseResult:
     """The scene alone with overrides of the user: no levels, nothing varied, so the goals alone decide."""
-    observables = tuple(replace(observable, order=None) for observable in case.observables)  # one level has no order
+    overrides = case.base + overrides
+    observables = tuple(replace(observable, order=None, extrapolated=None) for observable in case.observables)
     alone = replace(case, observables=observables, levels=(Level(overrides, "quick"),), vary=(), beside=(),
                     equivalence=None, stalls="")
-    runs = run_jobs([Job(alone, overrides)], out, Options(ranks=ranks), 1)
-    return judged(alone, "quick", {overrides: finished for (_, overrides), finished in runs.items()})
+    finished = run_jobs([Job(alone, overrides)], out, Options(ranks=ranks), 1)[case.name, overrides]
+    runs = {overrides: finished}
+    return judged(alone, "quick", runs, live=run_live(alone, "quick", runs, out) if case.live else None)

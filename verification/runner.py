@@ -33,7 +33,7 @@ class Job:
     def weight(self) -> float:
         """Cost relative to the scene as declared: particles times steps, where the spacing is overridden."""
         declared = self.case.scene.get("fluid", {}).get("spacing")
-        for override in self.overrides:
+        for override in reversed(self.overrides):  # the last one counts
             key, _, value = override.partition("=")
             if key == "fluid.spacing" and isinstance(declared, (int, float)):
                 return (declared / float(value)) ** (len(self.case.scene["box"]["size"]) + 1)

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from verification.case import find_case
+from verification.manifest import find_case
 from verification.judge import CORRECT, Outcome
 from verification.result import run_with
 from verification.solver import Run

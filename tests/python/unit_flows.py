@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from verification import flows
-from verification.case import find_case
+from verification.manifest import find_case
 from verification.fits import damped_oscillation
 from verification.flows import Flow, read_flow
 from verification.judge import measures

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.case import find_case
+from verification.manifest import find_case
 
 
 def reference(case: str, name: str) -> float:

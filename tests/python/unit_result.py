@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from verification.case import find_case
+from verification.manifest import find_case
 from verification.result import CaseResult, Exactness, run_with
 from verification.solver import ROOT
 

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from verification.case import find_case
+from verification.manifest import find_case
 from verification.solver import ROOT
 
 spec = importlib.util.spec_from_file_location("taylor_green", ROOT / "reference/spectral/taylor_green.py")

@@ -6,11 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.case import Observable, Vary, read_case
+from verification.case import Observable, Vary
 from verification.errors import CaseError
 from verification.history import changes
 from verification.judge import CONVERGING, CORRECT, NOT_CONVERGING, OPEN, STALLED, WRONG, Outcome, _varied
 from verification.ladder import converge, error_order, observed_order
+from verification.manifest import read_cases
 from verification.observables import Measured
 from verification.result import exactness
 from verification.runner import Job, jobs_of
@@ -163,7 +164,7 @@ ratio = 2
 label = "classic"
 set = ["fluid.method=classic"]
 """
-    case = read_case(written(tmp_path, extra))
+    (case,) = read_cases(written(tmp_path, extra))
     quick = [job.overrides for job in jobs_of(case, "quick")]
     assert quick == [("fluid.spacing=0.2",), (), ("run.step_factor=0.5",), ("fluid.method=classic",)]
     full = [job.overrides for job in jobs_of(case, "full")]
@@ -187,7 +188,7 @@ set = ["fluid.method=classic"]
 def test_a_bad_entry_is_refused_with_its_fix(tmp_path: Path, extra: str, message: str) -> None:
     file = written(tmp_path, extra)
     with pytest.raises(CaseError) as caught:
-        read_case(file)
+        read_cases(file)
     assert str(file) in str(caught.value) and message in str(caught.value)
 
 

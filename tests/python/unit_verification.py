@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.case import Observable, all_cases, read_case
+from verification.case import Observable
+from verification.manifest import all_cases, read_cases
 from verification.compare import PairDifference, trace_differences
 from verification.equivalence import Row, read_equivalence
 from verification.errors import CaseError
@@ -96,7 +97,7 @@ def test_a_bad_manifest_is_refused(tmp_path: Path, manifest: str, message: str) 
     file = tmp_path / "case.toml"
     file.write_text(manifest)
     with pytest.raises(CaseError) as caught:
-        read_case(file)
+        read_cases(file)
     assert str(file) in str(caught.value)
     assert message in str(caught.value)
 

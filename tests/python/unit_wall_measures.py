@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from synthetic import Fields, Snapshot, scattered, synthetic_run
-from verification.case import find_case
+from verification.manifest import find_case
 from verification.fits import values_at
 from verification.judge import case_module
 
