@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from reference.cavity_tables import centre_line
+from reference.published.cavity import centre_line
 from verification.curve import Chart, Curve
 from verification.fits import extrapolate, values_at
 from verification.histories import settling

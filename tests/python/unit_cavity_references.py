@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reference.cavity import chebyshev, interpolate, solve
-from reference.cavity_tables import CentreLine, centre_line
+from reference.published.cavity import CentreLine, centre_line
 
 
 @pytest.fixture(scope="module")

@@ -1,12 +1,10 @@
 """Published velocities on the centre lines of the lid-driven cavity."""
 
-import csv
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-PUBLISHED = Path(__file__).parent / "published"
+from reference.published.table import read_table
 
 
 @dataclass(frozen=True)
@@ -19,7 +17,5 @@ class CentreLine:
 
 def centre_line(component: str, reynolds: int, source: str = "ghia_1982") -> CentreLine:
     """component: "u" or "v"; reynolds: 100 or 1000; source: "ghia_1982", or "botella_1998" (1000 only)."""
-    with (PUBLISHED / f"{source}.csv").open() as file:
-        rows = csv.DictReader(line for line in file if not line.startswith("#"))
-        found = [(float(row["position"]), float(row[f"re{reynolds}"])) for row in rows if row["component"] == component]
-    return CentreLine(*np.array(found).T)
+    rows = [row for row in read_table(source).rows if row["component"] == component]
+    return CentreLine(*(np.array([float(row[key]) for row in rows]) for key in ("position", f"re{reynolds}")))

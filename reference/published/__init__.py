@@ -1,0 +1,23 @@
+"""Published figures, looked up for a scene. README.md beside this file lists the tables and what they are worth."""
+
+from reference.published import arrays
+from reference.published.value import Published
+
+TABLES = {
+    "square_array_stokes": arrays.square_array_stokes,
+    "simple_cubic_stokes": arrays.simple_cubic_stokes,
+    "simple_cubic_hasimoto": arrays.simple_cubic_hasimoto,
+}
+
+
+def look_up(name: str, scene: dict) -> Published:
+    """The figure of table `name` for a scene, as reference.scene reads it; fluid.reference_velocity is the velocity U.
+
+    Throws KeyError on a name that is not known, ValueError where the scene lies outside the range of the table.
+    """
+    if name not in TABLES:
+        raise KeyError(f"{name}: no such published table; known are {', '.join(sorted(TABLES))}")
+    return TABLES[name](scene)
+
+
+__all__ = ["TABLES", "Published", "look_up"]
