@@ -92,7 +92,7 @@ class Case:
 
     @property
     def judged(self) -> bool:
-        return bool(self.observables) or self.equivalence is not None
+        return bool(self.observables) or self.equivalence is not None or self.live is not None
 
     def levels_of(self, tier: str) -> list[Level]:
         """From coarse to fine; the scene as it stands where the manifest names none."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from verification.budget import body_work
 from verification.curve import Chart
-from verification.judge import COVERAGE, CORRECT, Outcome
+from verification.judge import COVERAGE, CORRECT, SKIPPED, Outcome
 from verification.result import CaseResult
 from verification.solver import Run
 
@@ -17,13 +17,13 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of a backend without a display)
 
 STYLE = {"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.3,
-         "svg.fonttype": "path", "svg.hashsalt": "mappm"}
+         "svg.fonttype": "none", "svg.hashsalt": "mappm"}
 MOST_VECTOR_POINTS = 300  # of a curve; those with more are drawn as pixels
 BLUE, GREEN, RED, GREY, DARK = "#1f5a96", "#17663a", "#b00020", "#888888", "#333333"
 
 
 @contextmanager
-def _figure(file: Path, width: float, height: float, rows: int = 1, columns: int = 1) -> Iterator:
+def figure_of(file: Path, width: float, height: float, rows: int = 1, columns: int = 1) -> Iterator:
     """Axes to draw on; the file is written at the end."""
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(rows, columns, figsize=(width, height), layout="constrained")
@@ -41,7 +41,7 @@ def slip_and_drag(run: Run, file: Path) -> None:
     series = run.series
     axis = "xyz"[int(np.argmax(np.abs(run.scene["force"]["fluid"])))]
     curves = (("slip_" + axis, "slip velocity of the solids", 0), ("drag_" + axis, "drag per solid", 1))
-    with _figure(file, 8, 5.6, rows=2) as axes:
+    with figure_of(file, 8, 5.6, rows=2) as axes:
         axes[0].sharex(axes[1])
         for axes_of, (column, title, skipped) in zip(axes, curves, strict=True):  # no drag before the first sample
             axes_of.plot(series["time"][skipped:], series[column][skipped:], color=BLUE, linewidth=1.4)
@@ -59,7 +59,7 @@ def energy_budget(run: Run, file: Path) -> None:
     held = {label: series[name] - series[name][0] for label, name in parts.items() if name in series}
     work = body_work(run)
     lost = work - sum(held.values())
-    with _figure(file, 8, 3.6) as axes:
+    with figure_of(file, 8, 3.6) as axes:
         axes.plot(time, work, color=DARK, linewidth=1.6, label="work of the body forces")
         axes.plot(time, lost, color=RED, linewidth=1.4, label="dissipated: work less what is held")
         for label, values in held.items():
@@ -71,17 +71,17 @@ def energy_budget(run: Run, file: Path) -> None:
 
 def overview(outcomes: list[tuple[str, Outcome]], file: Path) -> None:
     """Error over goal of every observable, with k u as bars: inside the band is within the goal."""
-    shown = [(name, outcome) for name, outcome in outcomes if outcome.observable.goal > 0][::-1]
-    with _figure(file, 8.5, 0.6 + 0.27 * len(shown)) as axes:
+    shown = [(name, outcome) for name, outcome in outcomes if outcome.observable.goal > 0 and outcome.verdict != SKIPPED][::-1]
+    with figure_of(file, 8.5, 0.6 + 0.27 * len(shown)) as axes:
         axes.axvspan(-1, 1, color=GREEN, alpha=0.08)
         axes.axvline(0, color=DARK, linewidth=0.8)
         for row, (_, outcome) in enumerate(shown):
             goal = outcome.observable.goal
             bar = COVERAGE * outcome.uncertainty / goal if not outcome.by_goal_alone else 0.0
-            colour = BLUE if outcome.verdict == CORRECT else RED
+            colour = {CORRECT: BLUE, SKIPPED: GREY}.get(outcome.verdict, RED)
             position = float(np.clip(outcome.error / goal, -1.9, 1.9))
             axes.errorbar(position, row, xerr=min(bar, 4.0), fmt="o", color=colour, markersize=4, capsize=2, linewidth=1)
-        axes.set_yticks(range(len(shown)), [f"{name}: {outcome.observable.symbol}" for name, outcome in shown], fontsize=8)
+        axes.set_yticks(range(len(shown)), [f"{name}: {outcome.observable.against}" for name, outcome in shown], fontsize=8)
         axes.set_xlim(-2, 2)
         axes.set_xlabel("error / goal; bars: k u_val; points at the edge lie beyond")
 
@@ -91,7 +91,7 @@ def convergence(outcome: Outcome, refined: str, file: Path) -> None:
     spacings = np.array(outcome.spacings)
     errors = np.array([abs(level.value - outcome.observable.reference) / outcome.scale for level in outcome.levels])
     bars = np.array([level.uncertainty / outcome.scale for level in outcome.levels])
-    with _figure(file, 4.6, 3.4) as axes:
+    with figure_of(file, 4.6, 3.4) as axes:
         axes.errorbar(spacings, errors, yerr=np.minimum(bars, 0.9 * errors), fmt="o-", color=BLUE, capsize=2, linewidth=1.2,
                       label="measured")
         for order, style in ((1, ":"), (2, "--")):
@@ -112,7 +112,7 @@ def uncertainty_split(result: CaseResult, file: Path) -> None:
     """Where u_num comes from: one bar a source, of every observable, relative to its goal."""
     shown = [outcome for outcome in result.outcomes if outcome.sources and outcome.observable.goal > 0]
     sources = list(dict.fromkeys(source for outcome in shown for source in outcome.sources))
-    with _figure(file, 4.6, 0.9 + 0.3 * len(sources) * max(1, 0.6 * len(shown))) as axes:
+    with figure_of(file, 4.6, 0.9 + 0.3 * len(sources) * max(1, 0.6 * len(shown))) as axes:
         height = 0.8 / len(shown)
         for k, outcome in enumerate(shown):
             values = [100 * outcome.sources.get(source, 0.0) / outcome.scale / outcome.observable.goal for source in sources]
@@ -124,7 +124,7 @@ def uncertainty_split(result: CaseResult, file: Path) -> None:
 
 
 def draw(chart: Chart, file: Path) -> None:
-    with _figure(file, 5.6, 3.8) as axes:
+    with figure_of(file, 5.6, 3.8) as axes:
         for curve in chart.curves:
             style = {"color": DARK if curve.reference else None, "label": curve.label}
             if curve.points:
@@ -145,7 +145,7 @@ def draw(chart: Chart, file: Path) -> None:
 
 def trend(history: list[dict], keys: list[str], file: Path) -> None:
     """|error| over goal of every observable, report by report."""
-    with _figure(file, 8, 3.4) as axes:
+    with figure_of(file, 8, 3.4) as axes:
         for key in keys:
             points = [(k, abs(entry["errors"][key]["error"]) / entry["errors"][key]["goal"])
                       for k, entry in enumerate(history) if key in entry["errors"] and entry["errors"][key]["goal"] > 0]

@@ -4,9 +4,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from verification import charts
-from verification.judge import curves_of
+from verification.curve import Chart
+from verification.judge import SKIPPED, own
 from verification.pictures import velocity_field
 from verification.result import CaseResult
+from verification.side_by_side import compare_fields
 from verification.solver import Run
 
 
@@ -14,27 +16,55 @@ from verification.solver import Run
 class CaseFigures:
     field: Path | None
     charts: tuple[Path, ...]
+    beside: Path | None = None  # the same field from this code and the reference code
+
+
+def _drawn(found: list[Chart], name: str, out: Path) -> list[Path]:
+    files = [out / f"{name}{k}.svg" for k in range(len(found))]
+    for chart, file in zip(found, files, strict=True):
+        charts.draw(chart, file)
+    return files
+
+
+def _live_figures(result: CaseResult, out: Path) -> tuple[Path | None, list[Path]]:
+    """(the field of both codes, charts of both codes) where the case has a reference code that ran."""
+    case, live = result.case, result.live
+    if live is None or not live.result.quantities or not result.outcomes:
+        return None, []
+    beside = None
+    if live.result.field and result.finest.snapshots():
+        beside = out / f"{case.name}_beside.png"
+        compare_fields(result.finest, live, f"{case.name}, {live.result.code} {live.result.version}", beside)
+    curves = own(case, "live_curves")
+    return beside, _drawn(curves(result.finest, live.folder) if curves else [], f"{case.name}_live", out)
 
 
 def case_figures(result: CaseResult, out: Path) -> CaseFigures:
     case = result.case
     if not result.outcomes:
         return CaseFigures(None, ())
-    finest, drawn, field = result.finest, [], None
-    if finest.snapshots() and finest.record["particles"] and case.scene["fluid"].get("particles", True):
+    finest, field = result.finest, None
+    beside, live_charts = _live_figures(result, out)
+    if beside is None and finest.snapshots() and finest.record["particles"] and case.scene["fluid"].get("particles", True):
         field = out / f"{case.name}_field.png"
         velocity_field(finest, field)
-    for k, chart in enumerate(curves_of(case, finest)):
-        drawn.append(out / f"{case.name}_curve{k}.svg")
-        charts.draw(chart, drawn[-1])
-    for k, outcome in enumerate(result.outcomes):
-        if len(outcome.levels) > 1:
+    curves = own(case, "curves")
+    drawn = _drawn(curves(finest) if curves else [], f"{case.name}_curve", out) + live_charts
+    leveled = {outcome.observable.name: outcome for outcome in reversed(result.outcomes) if len(outcome.levels) > 1}
+    for k, outcome in enumerate(leveled.values()):  # once where there are two references for one measure
+        if outcome.verdict != SKIPPED:
             drawn.append(out / f"{case.name}_levels{k}.svg")
             charts.convergence(outcome, case.refined, drawn[-1])
     if any(len(outcome.sources) > 1 and outcome.observable.goal > 0 for outcome in result.outcomes):
         drawn.append(out / f"{case.name}_sources.svg")
         charts.uncertainty_split(result, drawn[-1])
-    return CaseFigures(field, tuple(drawn))
+    return CaseFigures(field, tuple(drawn), beside)
+
+
+def family_figures(results: list[CaseResult], out: Path) -> tuple[Path, ...]:
+    """What measure.py draws of all points together: `def family_curves(results: list[CaseResult]) -> list[Chart]`."""
+    curves = own(results[0].case, "family_curves")
+    return tuple(_drawn(curves(results) if curves else [], f"{results[0].case.family}_family", out))
 
 
 def suite_figures(results: list[CaseResult], history: list[dict], out: Path) -> dict[str, Path]:

@@ -57,7 +57,7 @@ class Outcome:
     @property
     def uncertainty(self) -> float:
         """u_val, relative: numerical, of the reference and of the inputs together."""
-        return math.hypot(self.u_num, self.observable.uncertainty / self.scale, self.observable.input / self.scale)
+        return math.hypot(self.u_num, self.u_ref, self.observable.input / self.scale)
 
     @property
     def by_goal_alone(self) -> bool:
@@ -94,6 +94,11 @@ class Outcome:
     @property
     def order_text(self) -> str:
         return "none: not monotonic" if math.isnan(self.order) else f"{self.order:.2f}"
+
+    @property
+    def u_ref(self) -> float:
+        """Standard uncertainty of the reference, relative, as u_num is."""
+        return self.observable.uncertainty / self.scale
 
     @property
     def convergence_verdict(self) -> str:
@@ -163,10 +168,15 @@ def _loaded(file: Path) -> ModuleType:
     return module
 
 
+def own(case: Case, name: str) -> Callable | None:
+    """A function that measure.py of the case offers beside its measures: curves, live_curves, family_curves, live_options."""
+    return getattr(case_module(case), name, None)
+
+
 def measures(case: Case) -> dict[str, Callable[[Run], Measured]]:
     """Observables by name: those of the case over those that all share."""
-    own = case_module(case)
-    return OBSERVABLES | {name: value for name, value in vars(own).items() if callable(value)} if own else OBSERVABLES
+    module = case_module(case)
+    return OBSERVABLES | ({name: value for name, value in vars(module).items() if callable(value)} if module else {})
 
 
 def measure(case: Case, observable: Observable, finished: Run) -> Measured:
@@ -175,12 +185,6 @@ def measure(case: Case, observable: Observable, finished: Run) -> Measured:
         raise CaseError(f"{case.file}: case.observable.name = {observable.name!r}: unknown; define it in "
                         f"{case.file.parent / 'measure.py'} or take one of {', '.join(OBSERVABLES)}")
     return known[observable.name](finished)
-
-
-def curves_of(case: Case, finished: Run) -> list:
-    """What measure.py of the case draws: charts of verification/curve.py."""
-    own = case_module(case)
-    return own.curves(finished) if own and hasattr(own, "curves") else []
 
 
 def _height(case: Case, finished: Run) -> float:

@@ -7,7 +7,7 @@ from pathlib import Path
 import jinja2
 from PIL import Image
 
-from verification.judge import COVERAGE, CORRECT, NOT_CONVERGING
+from verification.judge import COVERAGE, CORRECT, NOT_CONVERGING, SKIPPED
 from verification.solver import ROOT
 
 TEMPLATES = ROOT / "reports" / "templates"
@@ -28,7 +28,7 @@ def _environment(escape: bool) -> jinja2.Environment:
         trim_blocks=True, lstrip_blocks=True,
     )
     environment.filters |= {"embedded": _embedded, "number": lambda value: f"{value:.4g}", "g": lambda value: f"{value:g}"}
-    environment.globals |= {"CORRECT": CORRECT, "NOT_CONVERGING": NOT_CONVERGING, "COVERAGE": COVERAGE}
+    environment.globals |= {"CORRECT": CORRECT, "NOT_CONVERGING": NOT_CONVERGING, "SKIPPED": SKIPPED, "COVERAGE": COVERAGE}
     return environment
 
 

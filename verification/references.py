@@ -9,9 +9,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from reference.live import Result, read_result
+from reference.published import look_up
 from verification.case import Case, Observable
 from verification.errors import CaseError
-from verification.judge import case_module
+from verification.judge import own
 from verification.runner import cores
 from verification.solver import ROOT, Run
 
@@ -28,8 +29,8 @@ class LiveRun:
 
 def live_command(case: Case, tier: str, runs: dict[tuple[str, ...], Run], folder: Path) -> list[str]:
     """For the finest level of the tier; measure.py of the case may add options that depend on the runs."""
-    own = case_module(case)
-    measured = own.live_options(runs) if own and hasattr(own, "live_options") else []
+    options = own(case, "live_options")
+    measured = options(runs) if options else []
     line = ["python3", "-m", f"reference.{case.live.code}", case.live.problem, "--scene", str(case.file), "--out", str(folder)]
     for override in case.levels_of(tier)[-1].overrides:
         line += ["--set", override]
@@ -77,8 +78,6 @@ def _from_live(observable: Observable, live: Result, case: Case) -> Observable:
 
 
 def _from_table(observable: Observable, case: Case) -> Observable:
-    from reference.published import look_up
-
     try:
         found = look_up(observable.published, case.scene)
     except (KeyError, ValueError) as error:

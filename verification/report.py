@@ -6,11 +6,13 @@ import json
 import math
 import shutil
 import time
+from dataclasses import replace
 from datetime import timedelta
 from pathlib import Path
 
 from verification.case import Case
-from verification.figures import CaseFigures, case_figures, shown_figures, suite_figures
+from verification.chapters import chapters_of, families_of
+from verification.figures import CaseFigures, case_figures, family_figures, shown_figures, suite_figures
 from verification.history import changes, errors_of, read_history
 from verification.judge import CORRECT, SKIPPED
 from verification.manifest import all_cases, find_case
@@ -121,11 +123,13 @@ def write_report(tier: str, out: Path, publish: bool) -> int:
         for result in results:
             say(result.case.name)
             figures[result.case.name] = case_figures(result, out)
+        families = [replace(family, charts=family_figures(list(family.results), out)) for family in families_of(results)]
+        chapters = chapters_of(results, figures, families)
         suite = suite_figures(results, [*history, entry], out)
         shown_pictures = shown_figures(shown, out)
     with progress.stage("page"):
         content = {
-            "tier": tier, "results": results, "figures": figures, "suite": suite, "shown_pictures": shown_pictures,
+            "tier": tier, "results": results, "figures": figures, "families": families, "chapters": chapters, "suite": suite, "shown_pictures": shown_pictures,
             "shown": SHOWN, "steps": STEPS[tier], "record": shown.record, "ledger": _ledger(shown), "stored": _stored(),
             "changes": changes(history, entry["errors"]), "history": history, "provenance": origin,
             "checksums": reference_checksums(), "took": str(timedelta(seconds=round(time.monotonic() - started))),
@@ -139,6 +143,7 @@ def write_report(tier: str, out: Path, publish: bool) -> int:
     for result in results:
         print("\n".join(f"{result.case.name}: {line}" for line in result.lines))
     verdicts = [outcome.verdict for result in results for outcome in result.outcomes]
-    print(f"{verdicts.count(CORRECT)} of {len(verdicts)} observables CORRECT; took {content['took']}")
+    skipped = f", {verdicts.count(SKIPPED)} SKIPPED" if SKIPPED in verdicts else ""
+    print(f"{verdicts.count(CORRECT)} of {len(verdicts)} observables CORRECT{skipped}; took {content['took']}")
     print(f"report: {out / 'index.html'}: {'everything holds' if holds else 'SOMETHING DOES NOT HOLD'}")
     return 0 if holds else 1
