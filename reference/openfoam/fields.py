@@ -1,0 +1,31 @@
+"""The velocity that a run left, in the frame and units of the scene, for pictures."""
+
+from pathlib import Path
+
+import numpy as np
+
+from reference.openfoam import read
+from reference.openfoam.cell import Cell
+from reference.openfoam.run import run
+
+FIELD = "field.npz"
+
+
+def write_field(folder: Path, cell: Cell, superficial: float, origin: np.ndarray, slab: float, out: Path) -> None:
+    """Writes OUT/field.npz from the last time of a run whose superficial velocity is `superficial`.
+
+    `origin`, (D,): where in the cell of the scene the origin of the mesh lies, over the side. In space only the cells
+    whose centres are within `slab` of the height of the first body are written, or files would be large.
+    """
+    run(folder, "postProcess", "-func", "writeCellCentres", "-latestTime")
+    last = read.latest(folder)
+    points = read.vectors(last / "C")[:, : cell.dimension] + origin
+    velocity = read.vectors(last / "U")[:, : cell.dimension]
+    if cell.dimension == 3:
+        away = points[:, 2] - cell.positions[0][2]
+        chosen = np.abs(away - np.round(away)) <= slab
+        points, velocity = points[chosen], velocity[chosen]
+    points = points % 1.0 * cell.side
+    velocity = velocity * (cell.speed / superficial)
+    out.mkdir(parents=True, exist_ok=True)
+    np.savez_compressed(out / FIELD, points=points, velocity=velocity)

@@ -1,0 +1,61 @@
+"""Reads what OpenFOAM wrote: logs, forces and fields, in ASCII."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+GRADIENT = re.compile(r"Pressure gradient source: uncorrected Ubar = (\S+), pressure gradient = (\S+)")
+VOLUME = re.compile(r"Total volume = (\S+?)\.\s")
+NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+
+
+def gradients(folder: Path, program: str) -> np.ndarray:
+    """(n,) force on the fluid per mass, one for each time step or iteration: the last of each."""
+    found = []
+    for line in (folder / f"log.{program}").open():
+        if line.startswith("Time = "):
+            found.append(np.nan)
+        elif (match := GRADIENT.match(line)) and found:
+            found[-1] = float(match[2])
+    return np.array(found)
+
+
+def volume(folder: Path) -> float:
+    """Of the fluid, from the log of checkMesh."""
+    return float(VOLUME.search((folder / "log.checkMesh").read_text())[1])
+
+
+def version(folder: Path, program: str) -> str:
+    """For example "1912"."""
+    match = re.search(r"OPENFOAM=(\w+)", (folder / f"log.{program}").read_text())
+    return match[1] if match else ""
+
+
+def converged(folder: Path, program: str) -> bool:
+    return "solution converged" in (folder / f"log.{program}").read_text()
+
+
+def forces(folder: Path) -> np.ndarray:
+    """(n, 4) time and the force of the fluid on the body per density, pressure and friction together."""
+    rows = []
+    for line in (folder / "postProcessing/forces/0/force.dat").open():
+        if not line.startswith("#"):
+            rows.append([float(number) for number in line.replace("(", " ").replace(")", " ").split()[:4]])
+    return np.array(rows)
+
+
+def latest(folder: Path) -> Path:
+    """The folder of the last time."""
+    times = [path for path in folder.iterdir() if path.is_dir() and NUMBER.fullmatch(path.name)]
+    return max(times, key=lambda path: float(path.name))
+
+
+def vectors(file: Path) -> np.ndarray:
+    """(cells, 3) the inner values of a vector field that is not uniform."""
+    text = file.read_text()
+    start = text.index("nonuniform List<vector>")
+    begin = text.index("(", start)
+    end = text.index("\n)", begin)
+    inner = text[begin + 1 : end].replace("(", " ").replace(")", " ")
+    return np.array(inner.split(), float).reshape(-1, 3)
