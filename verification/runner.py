@@ -22,7 +22,7 @@ class Job:
 
     @property
     def label(self) -> str:
-        return " ".join(self.overrides) or "as declared"
+        return " ".join(self.overrides[len(self.case.base) :]) or "as declared"
 
     @property
     def folder_name(self) -> str:

@@ -49,16 +49,31 @@ def _in_bodies(scene: dict, box: np.ndarray, x: np.ndarray, y: np.ndarray) -> np
     return solid
 
 
+def _surfaces(scene: dict, box: np.ndarray) -> np.ndarray:
+    """Points (n, 2) of the circles in which the plane cuts the solids, all of them at rest: no slip holds there."""
+    rings = [np.empty((0, 2))]
+    for body in scene.get("body", []):
+        for centre in _centres(body):
+            depth = centre[2] - 0.5 * box[2] if len(box) == 3 else 0.0
+            radius = np.sqrt(max(0.0, in_si(body["radius"]) ** 2 - depth**2))
+            angle = np.linspace(0, 2 * np.pi, 180, endpoint=False)
+            rings.append(centre[:2] + radius * np.column_stack([np.cos(angle), np.sin(angle)]))
+    return np.concatenate(rings)
+
+
 def speeds(run: Run, live: LiveRun) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(box, speed of this code, speed of the reference code), the latter two (NODES, NODES), NaN inside of solids."""
+    """(box, speed of this code, speed of the reference code), the latter two (NODES, NODES), NaN inside of the fixed solids."""
     box = np.array([in_si(side) for side in run.scene["box"]["size"]])
     x, y = np.meshgrid(*((np.arange(NODES) + 0.5) / NODES * side for side in box[:2]))
     fluid, field = run.fluid(), np.load(live.folder / live.result.field)
     half = SLAB * in_si(run.scene["fluid"]["spacing"])
     ours = _plane(fluid["points"], fluid["velocity"], box, half)
     theirs = _plane(field["points"], field["velocity"], box, np.inf)
-    solid = _in_bodies(run.scene, box, x, y)
-    grids = [np.where(solid, np.nan, _on_grid(*one, box, x, y)) for one in (ours, theirs)]
+    solid, surface = _in_bodies(run.scene, box, x, y), _surfaces(run.scene, box)
+    grids = []
+    for points, speed in (ours, theirs):
+        whole, known = np.concatenate([points, surface]), np.concatenate([speed, np.zeros(len(surface))])
+        grids.append(np.where(solid, np.nan, _on_grid(whole, known, box, x, y)))
     return box, *grids
 
 

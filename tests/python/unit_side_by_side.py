@@ -1,0 +1,74 @@
+"""Pictures and chapters that set two codes side by side. Oracles: fields made here that are equal, or apart by a known amount."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from reference.live import Result
+from verification.chapters import chapters_of, families_of
+from verification.figures import CaseFigures
+from verification.references import LiveRun
+from verification.side_by_side import compare_fields, speeds
+
+SIDE, RADIUS = 2.0, 0.4
+SCENE = {"box": {"size": [SIDE, SIDE]}, "fluid": {"spacing": 0.05},
+         "body": [{"shape": "disc", "radius": RADIUS, "position": [0.1, 1.0], "motion": "fixed"}]}
+
+
+def field(points: np.ndarray) -> np.ndarray:
+    """Zero on the surface of the disc, smooth and periodic beyond."""
+    offset = points[:, :2] - [0.1, 1.0]
+    offset -= SIDE * np.round(offset / SIDE)
+    speed = 1 + 0.2 * np.cos(np.pi * points[:, 1])
+    speed *= 1 - np.exp(-((np.linalg.norm(offset, axis=1) - RADIUS) / 0.5))
+    return np.column_stack([speed, np.zeros_like(speed)])
+
+
+def scattered(seed: int, count: int) -> np.ndarray:
+    points = np.random.default_rng(seed).uniform(0, SIDE, (count, 2))
+    offset = points - [0.1, 1.0]
+    offset -= SIDE * np.round(offset / SIDE)
+    return points[np.linalg.norm(offset, axis=1) > RADIUS]
+
+
+def both(folder: Path, factor: float) -> tuple[SimpleNamespace, LiveRun]:
+    ours, theirs = scattered(1, 6000), scattered(2, 9000)
+    np.savez(folder / "field.npz", points=theirs, velocity=factor * field(theirs))
+    run = SimpleNamespace(scene=SCENE, fluid=lambda: {"points": ours, "velocity": field(ours)})
+    return run, LiveRun(Result("Other", "1", field="field.npz"), folder)
+
+
+@pytest.mark.parametrize("factor", [1.0, 1.1])
+def test_fields_are_brought_to_one_grid(tmp_path: Path, factor: float) -> None:
+    _, ours, theirs = speeds(*both(tmp_path, factor))
+    assert np.isnan(ours[100, 10]) and np.isnan(theirs[100, 199])  # inside the disc, and inside its periodic image
+    share = np.isnan(ours).mean()
+    assert share == pytest.approx(np.pi * RADIUS**2 / SIDE**2, rel=0.02)
+    assert np.nanmean(theirs / np.where(ours > 0.1, ours, np.nan)) == pytest.approx(factor, abs=0.01)
+
+
+def test_the_picture_is_written(tmp_path: Path) -> None:
+    compare_fields(*both(tmp_path, 1.1), "title", tmp_path / "beside.png")
+    assert (tmp_path / "beside.png").stat().st_size > 10_000
+
+
+def result(name: str, holds: bool, code: str = "", rows: int = 1) -> SimpleNamespace:
+    live = SimpleNamespace(result=Result(code.capitalize())) if code else None
+    case = SimpleNamespace(name=name, family=name.partition(".")[0], live=SimpleNamespace(code=code) if code else None)
+    outcomes = tuple(SimpleNamespace(observable=SimpleNamespace(live="drag" if code else "")) for _ in range(rows))
+    return SimpleNamespace(case=case, holds=holds, live=live, outcomes=outcomes)
+
+
+def test_families_that_fail_come_first_and_chapters_gather_the_rows_of_a_code(tmp_path: Path) -> None:
+    results = [result("a", True), result("b.2", True, "openfoam"), result("b.1", False, "openfoam"),
+               result("c", True, "liggghts"), result("peer", True, "liggghts", rows=0)]
+    families = families_of(results)
+    assert [family.name for family in families] == ["b", "a", "c", "peer"]
+    assert [one.case.name for one in families[0].results] == ["b.1", "b.2"]
+    figures = {one.case.name: CaseFigures(None, (), tmp_path / one.case.name) for one in results}
+    openfoam, liggghts = chapters_of(results, figures, families)
+    assert (openfoam.code, openfoam.id, len(openfoam.rows)) == ("Openfoam", "openfoam", 2)
+    assert openfoam.pictures == (tmp_path / "b.1",)  # one of a family
+    assert [one.case.name for one in liggghts.shown] == ["peer"]
