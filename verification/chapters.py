@@ -35,6 +35,11 @@ class Chapter:
         return self.results[0].case.live.code
 
     @property
+    def version(self) -> str:
+        live = self.results[0].live.result
+        return live.version or live.missing or live.objection
+
+    @property
     def rows(self) -> list[tuple[CaseResult, Outcome]]:
         return [(result, outcome) for result in self.results for outcome in result.outcomes if outcome.observable.live]
 

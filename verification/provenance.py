@@ -41,5 +41,5 @@ def checksum(file: Path) -> str:
 
 def reference_checksums() -> dict[str, str]:
     """SHA-256 of every file of reference data."""
-    files = [*(ROOT / "reference").rglob("*.csv"), *cases_folder().glob("*/*.csv")]
+    files = [*(ROOT / "reference").rglob("*.csv"), *(ROOT / "reference").rglob("*.json"), *cases_folder().glob("*/*.csv")]
     return {str(file.relative_to(ROOT)): checksum(file) for file in sorted(files) if file.is_relative_to(ROOT)}

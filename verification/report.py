@@ -128,6 +128,7 @@ def write_report(tier: str, out: Path, publish: bool) -> int:
         suite = suite_figures(results, [*history, entry], out)
         shown_pictures = shown_figures(shown, out)
     with progress.stage("page"):
+        origin |= {chapter.code: chapter.version for chapter in chapters}
         content = {
             "tier": tier, "results": results, "figures": figures, "families": families, "chapters": chapters, "suite": suite, "shown_pictures": shown_pictures,
             "shown": SHOWN, "steps": STEPS[tier], "record": shown.record, "ledger": _ledger(shown), "stored": _stored(),

@@ -15,7 +15,7 @@ TREE = FOLDER / "tree"
 BUILD = FOLDER / "build"
 COPIED = ("CMakeLists.txt", "cmake", "solver", "bench", "tests")
 BUILT_FROM = (".cpp", ".hpp", ".txt", ".cmake")
-PYTHON_PART = ("verification", "cases", "tests/python", "reports/templates", "pyproject.toml")
+PYTHON_PART = ("verification", "reference", "cases", "tests/python", "reports/templates", "pyproject.toml")
 HEADER = "solver/base/mutant.hpp"
 HEADER_TEXT = """// Which fault of tests/mutation is awake: the number in MAPPM_MUTANT; none if it is not set.
 #pragma once
