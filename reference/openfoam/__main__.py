@@ -9,9 +9,8 @@ from pathlib import Path
 
 from reference.live import write_result
 from reference.openfoam.cell import cell_of, read_cell
-from reference.openfoam.drag import Options, check_levels, drag
+from reference.openfoam.drag import Options, check_meshes, drag, run_any
 from reference.openfoam.errors import InputError
-from reference.openfoam.level import run_level
 from reference.openfoam.run import FailedRun, missing_of
 from reference.openfoam.store import Stored, StoredLevel, find_stored, read_stored, stored_file, write_stored
 
@@ -36,6 +35,10 @@ def arguments(given: list[str]) -> argparse.Namespace:
     keep.add_argument("--solid", type=float, required=True, help="solids fraction")
     keep.add_argument("--reynolds", type=float, required=True, help="2 rho R U / mu")
     keep.add_argument("--levels", type=numbers, required=True, metavar="N,N")
+    for command in (one, keep):
+        command.add_argument("--transient", action="store_true", help="over time: mean drag, and period of a flow that sheds")
+        command.add_argument("--end", type=float, default=30.0, metavar="T",
+                             help="of a transient run, box sides over superficial velocity; the second half is measured")
     return parser.parse_args(given)
 
 
@@ -43,29 +46,30 @@ def run_drag(chosen: argparse.Namespace, command: str) -> None:
     cell = read_cell(chosen.scene, chosen.set)
     stored = None
     if chosen.stored is not None:
-        stored = find_stored(cell, False, Path(chosen.stored) if chosen.stored else None)
-    options = Options(chosen.levels, stored, chosen.jobs, chosen.out, command)
+        stored = find_stored(cell, chosen.transient, Path(chosen.stored) if chosen.stored else None)
+    options = Options(chosen.levels, stored, chosen.jobs, chosen.transient, chosen.end, chosen.out, command)
     with tempfile.TemporaryDirectory(prefix="openfoam_") as folder:
         write_result(drag(cell, options, Path(folder)), chosen.out)
 
 
 def run_store(chosen: argparse.Namespace, command: str) -> None:
-    """Levels that the file has already, made by the same case files, are kept."""
+    """Adds levels to the file of this cell; those that it has are made again if named."""
     cell = cell_of(chosen.dimension, chosen.solid, chosen.reynolds)
-    check_levels(cell, Options([*chosen.levels, 10**6 * 4]))
-    if missing := missing_of(("blockMesh", "checkMesh", "simpleFoam")):
+    options = Options(chosen.levels, transient=chosen.transient, end=chosen.end)
+    check_meshes(cell, options)
+    if missing := missing_of(("blockMesh", "checkMesh", "simpleFoam", "pimpleFoam")):
         raise InputError(missing)
-    file = stored_file(cell)
+    file = stored_file(cell, chosen.transient)
     levels = {level.n: level for level in read_stored(file).levels} if file.exists() else {}
     for n in sorted(set(chosen.levels)):
         with tempfile.TemporaryDirectory(prefix="openfoam_") as folder:
-            run = run_level(Path(folder) / "case", cell, n)
+            run = run_any(Path(folder) / "case", cell, n, options)
         if run.objection:
             raise InputError(f"--reynolds {cell.reynolds:g}, N {n}: {run.objection}")
-        levels[n] = StoredLevel(n, float(run.drag), round(run.core_seconds, 1), run.checksum)
+        levels[n] = StoredLevel(n, float(run.drag), round(run.core_seconds, 1), run.checksum, run.uncertainty, run.period)
         made = tuple(levels[n] for n in sorted(levels))
         write_stored(
-            Stored(cell.dimension, cell.solid, cell.reynolds, cell.direction, False, run.version, command,
+            Stored(cell.dimension, cell.solid, cell.reynolds, cell.direction, chosen.transient, run.version, command,
                    date.today().isoformat(), made),
             file,
         )  # after each level, as the finest take long

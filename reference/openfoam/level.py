@@ -21,12 +21,15 @@ BALANCE = 1e-5  # between the force on the surface and the body force, relative
 @dataclass(frozen=True)
 class LevelRun:
     n: int
-    drag: float  # F / (mu U), F / (6 pi mu R U) in space
+    drag: float  # F / (mu U), F / (6 pi mu R U) in space; the mean over time of a transient run
     core_seconds: float
     checksum: str
     version: str
     folder: Path
     objection: str = ""
+    uncertainty: float = 0.0  # of a mean over time
+    period: float | None = None  # sides over superficial velocity
+    history: np.ndarray | None = None  # (n, 3) time in these units, drag, force across; of a transient run
 
 
 def drag_scale(cell: Cell, fluid_volume: float) -> float:
