@@ -97,6 +97,14 @@ def sphere_mesh(radius: float, n: int) -> BlockMesh:
     return BlockMesh(vertices, blocks, (2 * n, 2 * n, 3 * n // 2), growth, arcs, patches, radius)
 
 
+def box_mesh(n: int) -> BlockMesh:
+    """A periodic cube of side 1 with a corner at the origin, n cells along each edge, and no body."""
+    vertices = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)], float)
+    patches = _pair("x", (0, 4, 7, 3), (1, 2, 6, 5)) | _pair("y", (0, 1, 5, 4), (3, 7, 6, 2))
+    patches |= _pair("z", (0, 3, 2, 1), (4, 5, 6, 7))
+    return BlockMesh(vertices, (tuple(range(8)),), (n, n, n), 1.0, (), patches)
+
+
 def mesh_of(dimension: int, radius: float, n: int) -> BlockMesh:
     return (disc_mesh if dimension == 2 else sphere_mesh)(radius, n)
 

@@ -59,7 +59,7 @@ def _control(solver: Solver) -> str:
 startFrom startTime; startTime 0; stopAt endTime; endTime {end:.15g}; deltaT {step:.15g};
 writeControl {"timeStep" if steady else "runTime"}; writeInterval {end:.15g}; purgeWrite 1;
 writeFormat ascii; writePrecision 12; writeCompression off; timeFormat general; timePrecision 10; runTimeModifiable no;
-functions {{ forces {{ type forces; libs (forces); patches ({BODY}); rho rhoInf; rhoInf 1; CofR (0 0 0);
+functions {{ forces {{ type forces; libs (forces); patches ("{BODY}.*"); rho rhoInf; rhoInf 1; CofR (0 0 0);
 writeControl timeStep; writeInterval 1; log no; }} }}"""
 
 

@@ -9,13 +9,14 @@ from reference.openfoam.cell import Cell
 from reference.openfoam.run import run
 
 FIELD = "field.npz"
+LARGEST = 20000  # cells of a field in space
 
 
-def write_field(folder: Path, cell: Cell, superficial: float, origin: np.ndarray, slab: float, out: Path) -> None:
+def write_field(folder: Path, cell: Cell, superficial: float, origin: np.ndarray, out: Path) -> None:
     """Writes OUT/field.npz from the last time of a run whose superficial velocity is `superficial`.
 
     `origin`, (D,): where in the cell of the scene the origin of the mesh lies, over the side. In space only the cells
-    whose centres are within `slab` of the height of the first body are written, or files would be large.
+    nearest to the plane through the first body are written, LARGEST at most, or files would be large.
     """
     run(folder, "postProcess", "-func", "writeCellCentres", "-latestTime")
     last = read.latest(folder)
@@ -23,7 +24,8 @@ def write_field(folder: Path, cell: Cell, superficial: float, origin: np.ndarray
     velocity = read.vectors(last / "U")[:, : cell.dimension]
     if cell.dimension == 3:
         away = points[:, 2] - cell.positions[0][2]
-        chosen = np.abs(away - np.round(away)) <= slab
+        away = np.abs(away - np.round(away))
+        chosen = away <= np.partition(away, min(LARGEST, round(len(away) ** (2 / 3))))[-1]
         points, velocity = points[chosen], velocity[chosen]
     points = points % 1.0 * cell.side
     velocity = velocity * (cell.speed / superficial)

@@ -10,7 +10,7 @@ import numpy as np
 from reference.live import checksum_of
 from reference.openfoam import read
 from reference.openfoam.blocks import block_mesh_dict, mesh_of
-from reference.openfoam.case_files import Solver, Steady, steady_for, write_case
+from reference.openfoam.case_files import Solver, steady_for, write_case
 from reference.openfoam.cell import Cell
 from reference.openfoam.run import run, say
 
@@ -63,13 +63,17 @@ def make(folder: Path, cell: Cell, n: int, solver: Solver) -> list[Path]:
     return write_case(folder, cell, solver, patches, block_mesh_dict(mesh))
 
 
-def run_level(folder: Path, cell: Cell, n: int, solver: Steady | None = None) -> LevelRun:
-    """Steady drag at level n. Throws FailedRun."""
-    solver = solver or steady_for(cell, n)
-    checksum = checksum_of(make(folder, cell, n, solver), folder)
-    seconds = sum(run(folder, program) for program in ("blockMesh", "checkMesh", solver.program))
+def measure(folder: Path, cell: Cell, n: int, checksum: str, seconds: float) -> LevelRun:
+    """Runs simpleFoam on a case whose mesh is made, and reads the drag. Throws FailedRun."""
+    seconds += run(folder, "checkMesh") + run(folder, "simpleFoam")
     fluid_volume = read.volume(folder)
-    drag = read.gradients(folder, solver.program)[-1] * drag_scale(cell, fluid_volume)
+    drag = float(read.gradients(folder, "simpleFoam")[-1] * drag_scale(cell, fluid_volume))
     say(f"N {n}: drag {drag:.7g}, {seconds:.1f} core-seconds")
-    version = read.version(folder, solver.program)
+    version = read.version(folder, "simpleFoam")
     return LevelRun(n, drag, seconds, checksum, version, folder, steady_objection(folder, cell, fluid_volume))
+
+
+def run_level(folder: Path, cell: Cell, n: int) -> LevelRun:
+    """Steady drag at level n. Throws FailedRun."""
+    checksum = checksum_of(make(folder, cell, n, steady_for(cell, n)), folder)
+    return measure(folder, cell, n, checksum, run(folder, "blockMesh"))

@@ -56,8 +56,11 @@ def _even_fit(sizes: tuple[float, float, float], values: tuple[float, float, flo
     return total
 
 
-def extrapolate(sizes: list[float], values: list[float]) -> Extrapolated:
-    """From coarse to fine; at least two levels, the finest three count. Throws ValueError on fewer."""
+def extrapolate(sizes: list[float], values: list[float], similar: bool = True) -> Extrapolated:
+    """From coarse to fine; at least two levels, the finest three count. Throws ValueError on fewer.
+
+    Where the meshes are not `similar`, an observed order near that of the scheme may be chance, and is not trusted.
+    """
     if len(values) < 2:
         raise ValueError("an extrapolation needs two levels")
     if len(values) == 2:
@@ -69,8 +72,9 @@ def extrapolate(sizes: list[float], values: list[float]) -> Extrapolated:
     order = observed_order(sizes, values)
     if order is None:
         spread = max(values) - min(values)
-        return Extrapolated(values[-1], SAFETY * spread / 2, None, "Value of the finest level, as the levels do not converge steadily; 1.5 times their spread.")
-    if abs(order - SCHEME_ORDER) <= NEAR:
+        note = "Value of the finest level, as the levels do not converge steadily; 1.5 times their spread."
+        return Extrapolated(values[-1], SAFETY * spread / 2, None, note)
+    if similar and abs(order - SCHEME_ORDER) <= NEAR:
         uncertainty = _index(sizes, values, SCHEME_ORDER, SAFETY_TRUSTED) / 2
         note = "Errors in h^2 and h^4 eliminated over three levels; half the GCI of the finest, safety factor 1.25."
         return Extrapolated(_even_fit(sizes, values), uncertainty, order, note)

@@ -1,0 +1,38 @@
+"""The problem `bodies`: the total drag on several fixed discs or spheres in a periodic cell, on unstructured meshes."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+
+from reference.live import checksum_of
+from reference.openfoam import plane_mesh, space_mesh
+from reference.openfoam.case_files import Steady, write_case
+from reference.openfoam.cell import Cell
+from reference.openfoam.errors import InputError
+from reference.openfoam.ladder import Problem
+from reference.openfoam.level import LevelRun, measure
+from reference.openfoam.shift import clear_cuts
+
+CLEAR = 0.05  # of a radius, from a surface to a side of the cell
+SMALLEST = {2: 4, 3: 8}
+HOW_TO_GET = "apt-get install openfoam gmsh"
+
+
+def bodies_problem(cell: Cell) -> Problem:
+    """Throws InputError."""
+    shift, clearance = clear_cuts(np.array(cell.positions), cell.radius)
+    if clearance < CLEAR * cell.radius:
+        raise InputError("body.0.positions: every cut through the box meets a body, and the mesh needs one along each "
+                         "axis that meets none; move one")
+    positions = (np.array(cell.positions) + shift) % 1.0
+    mesh = plane_mesh if cell.dimension == 2 else space_mesh
+
+    def run(folder: Path, n: int) -> LevelRun:
+        shutil.rmtree(folder, ignore_errors=True)
+        files = write_case(folder, cell, Steady(0.9, 1e-7), mesh.kinds(len(positions)))
+        files += mesh.write_input(folder, positions, cell.radius, n)
+        return measure(folder, cell, n, checksum_of(files, folder), mesh.make_mesh(folder))
+
+    return Problem("total_drag", cell, run, (*mesh.PROGRAMS, "checkMesh", "simpleFoam"), HOW_TO_GET,
+                   SMALLEST[cell.dimension], 1, -shift, similar=False)
