@@ -49,6 +49,7 @@ class DragSeries:
 
     time: np.ndarray
     velocity: np.ndarray  # superficial
+    across: np.ndarray  # (n, D), superficial velocity less its part along the force
     on_surface: np.ndarray  # force of the fluid on the solid, over the body force that the PPs of the cell receive
     body_force: float  # F: that body force over the share of the fluid in the cell
     relaxation: float  # time in which an unsteady flow decays, about
@@ -65,18 +66,27 @@ def drag_series(run: Run) -> DragSeries:
     force = np.array(run.scene["force"]["fluid"])
     acceleration = float(np.linalg.norm(force))
 
-    def along(name: str) -> np.ndarray:
-        return sum(share * series[f"{name}_{axis}"] for share, axis in zip(force / acceleration, "xyz"))
+    direction = force / acceleration
+
+    def vectors(name: str) -> np.ndarray:
+        return np.column_stack([series[f"{name}_{axis}"] for axis in "xyz"[: len(box)]])
 
     solid = np.pi * body["radius"] ** 2 if len(box) == 2 else 4 / 3 * np.pi * body["radius"] ** 3
     cell = float(np.prod(box))
     open_share = 1 - solid / cell
-    past = along("fluid_velocity") if body.get("motion", "free") == "fixed" else -along("slip")
+    past = vectors("fluid_velocity") if body.get("motion", "free") == "fixed" else -vectors("slip")
+    velocity = open_share * past @ direction
     received = fluid["density"] * acceleration * cell * _filled(run)
-    transfer = fluid["density"] * cell * open_share * abs(past[-1]) / received
+    transfer = fluid["density"] * cell * abs(velocity[-1]) / received
     spreading = (box.max() / (2 * np.pi)) ** 2 * fluid["density"] / fluid["viscosity"]
-    return DragSeries(series["time"], open_share * past, along("drag") / received, received / open_share,
-                      float(max(transfer, spreading)))
+    return DragSeries(
+        time=series["time"],
+        velocity=velocity,
+        across=open_share * past - np.outer(velocity, direction),
+        on_surface=vectors("drag") @ direction / received,
+        body_force=received / open_share,
+        relaxation=float(max(transfer, spreading)),
+    )
 
 
 def _filled(run: Run) -> float:
@@ -115,6 +125,14 @@ def drag(run: Run) -> Measured:
     return Measured(float(value), uncertainty, "; ".join(objections))
 
 
+def sideways(run: Run) -> Measured:
+    """Superficial velocity across the body force over that along it, both means of the second half of the run."""
+    cell = drag_series(run)
+    half = cell.time >= 0.5 * cell.time[-1]
+    across = np.linalg.norm(cell.across[half].mean(axis=0))
+    return Measured(float(across / cell.velocity[half].mean()), 0.0)
+
+
 def largest_velocity(run: Run) -> Measured:
     """Largest speed of a PP in the last snapshot over the sound speed."""
     speed = np.linalg.norm(run.fluid()["velocity"], axis=1)
@@ -123,5 +141,5 @@ def largest_velocity(run: Run) -> Measured:
 
 OBSERVABLES: dict[str, Callable[[Run], Measured]] = {
     function.__name__: function
-    for function in (viscosity, drag, largest_velocity)
+    for function in (viscosity, drag, sideways, largest_velocity)
 }
