@@ -8,11 +8,13 @@ import numpy as np
 @dataclass(frozen=True)
 class Limit:
     """What a relaxing series tends to: `value` by extrapolation, `last` the mean of its last tenth, `noise` the standard
-    deviation of the residuals."""
+    deviation of the residuals, `error` the standard error of their mean, from the scatter of eight stretches of them."""
 
     value: float
     last: float
     noise: float
+    error: float
+    tau: float
 
     @property
     def gap(self) -> float:
@@ -20,23 +22,32 @@ class Limit:
         return abs(self.value - self.last) / abs(self.value)
 
 
-def extrapolate(time: np.ndarray, values: np.ndarray) -> Limit:
-    """Fits a + b exp(-t / tau) to the second half of a series; tau is searched from a thirtieth of the half to its length.
+STRETCHES = 8
+
+
+def relaxed(time: np.ndarray, values: np.ndarray, tau: float) -> Limit:
+    """Fits a + b exp(-t / tau) with the given tau to the second half of a series. Throws ValueError where that is short."""
+    half = time >= 0.5 * (time[0] + time[-1])
+    t, y = time[half] - time[half][0], values[half]
+    if len(t) < STRETCHES:
+        raise ValueError(f"{len(t)} samples in the second half of the run; sample more often or run longer")
+    basis = np.column_stack([np.ones_like(t), np.exp(-t / tau)])
+    coefficients, *_ = np.linalg.lstsq(basis, y, rcond=None)
+    rest = y - basis @ coefficients
+    error = np.std([part.mean() for part in np.array_split(rest, STRETCHES)], ddof=2) / np.sqrt(STRETCHES)
+    last = float(np.mean(y[-max(1, len(values) // 10) :]))
+    return Limit(float(coefficients[0]), last, float(np.std(rest)), float(error), tau)
+
+
+def extrapolate(time: np.ndarray, values: np.ndarray, longest: float = np.inf) -> Limit:
+    """Fits a + b exp(-t / tau) to the second half of a series; tau is searched from a thirtieth of the half to its length,
+    or to `longest`, where the flow is known to relax no more slowly.
 
     A tau beyond the length of the data is not determined by them, which shows as a gap between value and last.
     """
-    half = time >= 0.5 * (time[0] + time[-1])
-    t, y = time[half] - time[half][0], values[half]
-    if len(t) < 8:
-        raise ValueError(f"{len(t)} samples in the second half of the run; sample more often or run longer")
-
-    def fit(tau: float) -> tuple[float, float]:
-        basis = np.column_stack([np.ones_like(t), np.exp(-t / tau)])
-        coefficients, *_ = np.linalg.lstsq(basis, y, rcond=None)
-        return float(np.std(y - basis @ coefficients)), float(coefficients[0])
-
-    noise, value = min(fit(tau) for tau in t[-1] * np.geomspace(1 / 30, 1, 60))
-    return Limit(value, float(np.mean(y[-max(1, len(values) // 10) :])), noise)
+    half = 0.5 * (time[-1] - time[0])
+    slowest = min(max(longest, half / 30), half)
+    return min((relaxed(time, values, tau) for tau in np.geomspace(half / 30, slowest, 60)), key=lambda fit: fit.noise)
 
 
 def decay_rate(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:

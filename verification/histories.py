@@ -4,6 +4,7 @@ import numpy as np
 
 from verification.curve import Chart, Curve
 from verification.fits import extrapolate
+from verification.observables import drag_series
 from verification.solver import Run
 
 
@@ -15,18 +16,15 @@ def settling(title: str, label: str, time: np.ndarray, values: np.ndarray) -> Ch
 
 
 def drag_history(run: Run) -> list[Chart]:
-    """Superficial velocity, and the force on the surface of one fixed solid over the body force of the fluid."""
-    force, series = np.array(run.scene["force"]["fluid"]), run.series
-    axis = int(np.argmax(np.abs(force)))
-    name = "xyz"[axis]
-    filled = series["superficial_velocity_" + name][-1] / series["fluid_velocity_" + name][-1]
-    body_force = run.scene["fluid"]["density"] * force[axis] * np.prod(run.scene["box"]["size"]) * filled
-    time, surface = series["time"][1:], series["drag_" + name][1:] / body_force  # no force before the first sample
+    """Superficial velocity, and the force on the surface of one solid over the body force of the fluid."""
+    cell = drag_series(run)
     balance = Chart(
         "Force on the surface against time",
         "time",
         "force on the surface / body force",
-        (Curve("balance", time[[0, -1]], np.ones(2), reference=True), Curve("measured", time, surface)),
+        (
+            Curve("balance", cell.time[[0, -1]], np.ones(2), reference=True),
+            Curve("measured", cell.time[1:], cell.on_surface[1:]),  # no force before the first sample
+        ),
     )
-    velocity = series["superficial_velocity_" + name]
-    return [settling("Superficial velocity against time", "U", series["time"], velocity), balance]
+    return [settling("Superficial velocity against time", "U", cell.time, cell.velocity), balance]
