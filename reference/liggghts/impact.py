@@ -128,7 +128,6 @@ timestep {scene.step!r}
 fix motion all nve/sphere
 {gravity}
 {walls}
-{"" if scene.dimension == 3 else "fix plane all enforce2d"}
 dump motion all custom {scene.sample} {DUMP} id {" ".join(MOTION)}
 dump_modify motion sort id format "%d {" ".join(["%.17g"] * len(MOTION))}"
 thermo {scene.steps}
