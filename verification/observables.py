@@ -53,10 +53,10 @@ def _cell(run: Run) -> tuple[int, float, float, float]:
 
 
 def drag(run: Run) -> Measured:
-    """F / (mu U) in the plane, F / (6 pi mu R U) in space, of one solid in a periodic cell.
+    """F / (mu U) in the plane, F / (6 pi mu R U) in space, of all solids of one kind in a periodic cell together.
 
     F is the mean pressure gradient times the volume of the whole cell, rho g V; the force on the surface is less by the
-    solid's volume, rho g (V - V_s). U is the superficial velocity, over the whole cell. (Convention of Sangani and
+    solids' volume, rho g (V - V_s). U is the superficial velocity, over the whole cell. (Convention of Sangani and
     Acrivos 1982, Zick and Homsy 1982.) A free solid is held by no one: there the frame is that of the solid.
     """
     axis, acceleration, cell, solid = _cell(run)
@@ -71,7 +71,8 @@ def drag(run: Run) -> Measured:
         scale *= 6 * np.pi * run.scene["body"][0]["radius"]
     value = fluid["density"] * acceleration * cell / scale
     filled = series["superficial_velocity_" + name][-1] / series["fluid_velocity_" + name][-1]  # with PPs, of the cell
-    on_surface = extrapolate(series["time"], series["drag_" + name]).value
+    solids = len(run.scene["body"][0].get("positions", [None]))
+    on_surface = solids * extrapolate(series["time"], series["drag_" + name]).value
     imbalance = abs(on_surface / (fluid["density"] * acceleration * cell * filled) - 1)
     objections = []
     if imbalance > SETTLED:
