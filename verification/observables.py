@@ -45,18 +45,18 @@ def viscosity(run: Run) -> Measured:
 
 @dataclass(frozen=True)
 class DragSeries:
-    """One solid in a periodic cell over time, along the body force, in the frame of the solid; scene units."""
+    """Solids of one kind in a periodic cell over time, along the body force, in their frame; scene units."""
 
     time: np.ndarray
     velocity: np.ndarray  # superficial
     across: np.ndarray  # (n, D), superficial velocity less its part along the force
-    on_surface: np.ndarray  # force of the fluid on the solid, over the body force that the PPs of the cell receive
+    on_surface: np.ndarray  # force of the fluid on all of them, over the body force that the PPs of the cell receive
     body_force: float  # F: that body force over the share of the fluid in the cell
     relaxation: float  # time in which an unsteady flow decays, about
 
 
 def drag_series(run: Run) -> DragSeries:
-    """Of a fixed solid, or of one that moves: then the slip says what flows past it.
+    """Of fixed solids, or of some that move: then the slip says what flows past them.
 
     A velocity relaxes as momentum passes to the solid, in rho V_f U / F_s, and as vorticity spreads over the cell, in
     (L / 2 pi)^2 / nu.
@@ -71,9 +71,10 @@ def drag_series(run: Run) -> DragSeries:
     def vectors(name: str) -> np.ndarray:
         return np.column_stack([series[f"{name}_{axis}"] for axis in "xyz"[: len(box)]])
 
-    solid = np.pi * body["radius"] ** 2 if len(box) == 2 else 4 / 3 * np.pi * body["radius"] ** 3
+    solids = len(body.get("positions", [None]))
+    volume = np.pi * body["radius"] ** 2 if len(box) == 2 else 4 / 3 * np.pi * body["radius"] ** 3
     cell = float(np.prod(box))
-    open_share = 1 - solid / cell
+    open_share = 1 - solids * volume / cell
     past = vectors("fluid_velocity") if body.get("motion", "free") == "fixed" else -vectors("slip")
     velocity = open_share * past @ direction
     received = fluid["density"] * acceleration * cell * _filled(run)
@@ -83,7 +84,7 @@ def drag_series(run: Run) -> DragSeries:
         time=series["time"],
         velocity=velocity,
         across=open_share * past - np.outer(velocity, direction),
-        on_surface=vectors("drag") @ direction / received,
+        on_surface=solids * (vectors("drag") @ direction) / received,
         body_force=received / open_share,
         relaxation=float(max(transfer, spreading)),
     )
@@ -101,11 +102,11 @@ def _filled(run: Run) -> float:
 
 
 def drag(run: Run) -> Measured:
-    """F / (mu U) in the plane, F / (6 pi mu R U) in space, of one solid in a periodic cell.
+    """F / (mu U) in the plane, F / (6 pi mu R U) in space, of all solids of one kind in a periodic cell together.
 
     F is the mean pressure gradient times the volume of the whole cell; the force on the surface, which is the body force
     that the fluid receives, is less by the share of the solid. U is the superficial velocity, over the whole cell.
-    (Convention of Sangani and Acrivos 1982, Zick and Homsy 1982.) The frame is that of the solid. Force and velocity are
+    (Convention of Sangani and Acrivos 1982, Zick and Homsy 1982.) The frame is that of the solids. Force and velocity are
     taken along the body force, and extrapolated over no longer than a few relaxation times of the flow: a drift that is
     slower is noise of the particles.
     """

@@ -16,16 +16,15 @@ def write_field(folder: Path, cell: Cell, superficial: float, origin: np.ndarray
     """Writes OUT/field.npz from the last time of a run whose superficial velocity is `superficial`.
 
     `origin`, (D,): where in the cell of the scene the origin of the mesh lies, over the side. In space only the cells
-    nearest to the plane through the first body are written, LARGEST at most, or files would be large.
+    nearest to the middle plane of the box are written, LARGEST at most, or files would be large.
     """
     run(folder, "postProcess", "-func", "writeCellCentres", "-latestTime")
     last = read.latest(folder)
     points = read.vectors(last / "C")[:, : cell.dimension] + origin
     velocity = read.vectors(last / "U")[:, : cell.dimension]
     if cell.dimension == 3:
-        away = points[:, 2] - cell.positions[0][2]
-        away = np.abs(away - np.round(away))
-        chosen = away <= np.partition(away, min(LARGEST, round(len(away) ** (2 / 3))))[-1]
+        away = np.abs(points[:, 2] % 1.0 - 0.5)
+        chosen = np.argsort(away, kind="stable")[: min(LARGEST, round(2 * len(away) ** (2 / 3)))]
         points, velocity = points[chosen], velocity[chosen]
     points = points % 1.0 * cell.side
     velocity = velocity * (cell.speed / superficial)
