@@ -122,7 +122,7 @@ def verification(*words: str) -> subprocess.CompletedProcess:
 def test_the_judge_lists_and_runs_cases(tmp_path: Path) -> None:
     listed = verification("list")
     assert listed.returncode == 0
-    assert {line.split()[0] for line in listed.stdout.splitlines()} >= {"gas_solid_small", "rest", "sphere_array"}
+    assert {line.split()[0] for line in listed.stdout.splitlines()} >= {"gas_solid_small", "rest", "sphere_stokes.phi_0.064"}
     judged = verification("run", "rest", "--out", str(tmp_path), "--set", "run.steps=10")
     assert judged.returncode == 0, judged.stderr
     assert judged.stdout.splitlines() == [

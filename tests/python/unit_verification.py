@@ -11,7 +11,7 @@ from verification.manifest import all_cases, read_cases
 from verification.compare import PairDifference, trace_differences
 from verification.equivalence import Row, read_equivalence
 from verification.errors import CaseError
-from verification.fits import decay_rate, extrapolate
+from verification.fits import decay_rate, extrapolate, relaxed
 from verification.judge import CORRECT, OPEN, WRONG, Outcome, measures
 from verification.observables import Measured
 from verification.series import first_difference, read_table
@@ -49,6 +49,21 @@ def test_extrapolation_finds_the_limit_of_a_decay() -> None:
     assert limit.last == pytest.approx(3.0 - 2.0 * np.exp(-9.5 / 2.5), rel=2e-3)
     unsettled = extrapolate(TIME, 3.0 - 2.0 * np.exp(-TIME / 5.0))
     assert unsettled.gap > 0.05  # 2 exp(-9.5/5) / 3 = 0.10 is still missing
+
+
+def test_extrapolation_with_a_known_time_does_not_follow_a_drift() -> None:
+    rising = 3.0 + 0.1 * TIME
+    assert extrapolate(TIME, rising, 0.2).value == pytest.approx(3.75, rel=0.01)  # the mean of the second half
+    assert extrapolate(TIME, rising).value > 4.0
+    assert relaxed(TIME, 3.0 - 2.0 * np.exp(-TIME / 2.5), 2.5).value == pytest.approx(3.0, rel=1e-12)
+
+
+def test_the_error_of_a_limit_is_that_of_the_mean_of_its_noise() -> None:
+    time = np.linspace(0.0, 10.0, 4001)
+    noise = np.random.default_rng(1).normal(0.0, 0.1, len(time))
+    limit = relaxed(time, 3.0 + noise, 0.01)
+    assert limit.noise == pytest.approx(0.1, rel=0.05)
+    assert limit.error == pytest.approx(0.1 / np.sqrt(2000), rel=0.6)  # from eight stretches: good to a quarter, twice over
 
 
 def test_decay_rate_of_an_exponential() -> None:
