@@ -1,0 +1,179 @@
+"""A body released in a periodic cell: its slip against a drag law, LIGGGHTS, and unsteady Stokes flow.
+
+The slip w is the mean velocity of the fluid seen from the body, along the force. With the forces F and -F on fluid and body,
+(m_s m_f / (m_s + m_f)) dw/dt = F - f.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from reference.stokes.square_array import square_array
+from reference.stokes.unsteady_array import slip_after_release, virtual_mass
+from verification.curve import Chart, Curve
+from verification.observables import Measured
+from verification.series import read_table
+from verification.solver import Run
+
+TIMES = 24  # at which a run is compared with theory
+
+
+@dataclass(frozen=True)
+class Release:
+    """The scene in its own units. In the plane masses and forces are those of a metre of depth."""
+
+    dimension: int
+    side: float
+    fraction: float
+    radius: float
+    density: float  # of the fluid
+    viscosity: float
+    ratio: float  # of the densities of body and fluid
+    acceleration: float  # of the fluid, along x
+
+    @property
+    def fluid_mass(self) -> float:
+        return self.density * self.side**self.dimension * (1 - self.fraction)
+
+    @property
+    def displaced(self) -> float:
+        return self.density * self.side**self.dimension * self.fraction
+
+    @property
+    def reduced_mass(self) -> float:
+        return 1 / (1 / self.fluid_mass + 1 / (self.ratio * self.displaced))
+
+    @property
+    def force(self) -> float:
+        return self.fluid_mass * self.acceleration
+
+    @property
+    def diffusion_time(self) -> float:
+        """L^2 / nu."""
+        return self.side**2 * self.density / self.viscosity
+
+
+def release_of(run: Run) -> Release:
+    (body,), fluid, sides = run.scene["body"], run.scene["fluid"], run.scene["box"]["size"]
+    solid = np.pi * body["radius"] ** 2 if len(sides) == 2 else 4 / 3 * np.pi * body["radius"] ** 3
+    return Release(len(sides), sides[0], solid / np.prod(sides), body["radius"], fluid["density"], fluid["viscosity"],
+                   body["density"] / fluid["density"], run.scene["force"]["fluid"][0])
+
+
+@dataclass(frozen=True)
+class Law:
+    """f = drag w + virtual_mass dw/dt."""
+
+    drag: float
+    virtual_mass: float
+
+    def slip(self, release: Release, time: np.ndarray) -> np.ndarray:
+        """After release at time 0."""
+        return release.force / self.drag * -np.expm1(-time * self.drag / (release.reduced_mass + self.virtual_mass))
+
+
+@cache
+def stokes_law(release: Release) -> Law:
+    """Of Stokes flow through the array, in slow relaxation."""
+    drag = release.viscosity * (1 - release.fraction) ** 2 * square_array(release.fraction).drag
+    return Law(drag, virtual_mass(release.fraction) * release.density * release.side**2)
+
+
+@cache
+def stokes_flow(release: Release, times: tuple[float, ...]) -> np.ndarray:
+    """Slip of the unsteady Stokes flow, added mass and history included."""
+    mass = release.reduced_mass / (release.density * release.side**2)
+    found = slip_after_release(release.fraction, mass, np.array(times) / release.diffusion_time)
+    return found * release.force / release.viscosity
+
+
+def slip(run: Run) -> tuple[np.ndarray, np.ndarray]:
+    """(time since the release, w)."""
+    series, relax = run.series, run.scene["run"].get("relax", 0)
+    since = series["step"] >= relax
+    time = series["time"][since]
+    return time - relax * series["time"][-1] / series["step"][-1], -series["slip_x"][since]
+
+
+def measured_law(run: Run) -> Law:
+    """Of the end of a run, where the flow is steady, with the body free or held.
+
+    The momentum of the fluid in slow relaxation is that of its energy: with the velocity field of the steady flow times
+    w(t), seen from the body, F w = f w + d/dt (1/2 integral of rho u^2), an integral that goes as w^2.
+    """
+    release, tail = release_of(run), slice(-max(1, len(run.series) // 10), None)
+    w, body, fluid, energy = (float(np.mean(values[tail])) for values in (
+        slip(run)[1], *(run.series[name] for name in ("solid_velocity_x", "fluid_velocity_x", "fluid_energy"))))
+    mass = release.fluid_mass
+    seen = energy - mass * fluid * body + 0.5 * mass * body**2
+    return Law(release.force / w, 2 * seen / w**2 - mass)
+
+
+def terminal_velocity(run: Run) -> Measured:
+    """Mean of the last tenth of the run; uncertainty, how far it still moves there."""
+    tail = slip(run)[1][-max(2, len(run.series) // 10) :]
+    return Measured(float(np.mean(tail)), float(np.std(tail)))
+
+
+def relaxation_time(run: Run) -> Measured:
+    time, w = slip(run)
+    return Measured(float(np.interp(-np.expm1(-1.0) * terminal_velocity(run).value, w, time)), float(time[1] - time[0]) / 2)
+
+
+def _times(run: Run) -> np.ndarray:
+    end = slip(run)[0][-1]
+    return np.geomspace(0.01 * end, end, TIMES)
+
+
+def _largest(run: Run, expected: np.ndarray) -> Measured:
+    time, w = slip(run)
+    return Measured(float(np.max(np.abs(np.interp(_times(run), time, w) - expected)) / expected[-1]), 0.0)
+
+
+def from_drag_law(run: Run) -> Measured:
+    release = release_of(run)
+    return _largest(run, stokes_law(release).slip(release, _times(run)))
+
+
+def from_stokes_flow(run: Run) -> Measured:
+    return _largest(run, stokes_flow(release_of(run), tuple(_times(run))))
+
+
+def lag(run: Run) -> Measured:
+    """Largest lag behind the drag law without the fluid that the body drags along, of the velocity at the end."""
+    release, (time, w) = release_of(run), slip(run)
+    alone = Law(stokes_law(release).drag, 0.0).slip(release, time)
+    return Measured(float(np.max(alone - w) / alone[-1]), 0.0)
+
+
+def live_options(runs: dict[tuple[str, ...], Run]) -> list[str]:
+    """The drag law for LIGGGHTS, of the run with the body held fixed."""
+    (held,) = [run for run in runs.values() if run.scene["body"][0].get("motion") == "fixed"]
+    release, law = release_of(held), measured_law(held)
+    mass = release_of(next(run for run in runs.values() if run is not held)).reduced_mass + law.virtual_mass
+    return ["--gamma", f"{law.drag:.12g}", "--force", f"{release.force:.12g}", "--mass", f"{mass:.12g}"]
+
+
+def laws(run: Run) -> tuple[Curve, ...]:
+    """Without and with the mass that a body in a wide fluid adds: that of the fluid displaced, in space half of it."""
+    release, time = release_of(run), np.linspace(0, slip(run)[0][-1], 200)
+    drag = stokes_law(release).drag
+    added = release.displaced * (1.0 if release.dimension == 2 else 0.5)
+    return (Curve("drag law alone", time, Law(drag, 0.0).slip(release, time)),
+            Curve("and added mass", time, Law(drag, added).slip(release, time)))
+
+
+def curves(run: Run) -> list[Chart]:
+    times = _times(run)
+    exact = Curve("unsteady Stokes flow: added mass and history", times, stokes_flow(release_of(run), tuple(times)), reference=True)
+    return [Chart("Slip after release", "time", "w", (*laws(run), exact, Curve("MaPPM", *slip(run))))]
+
+
+def live_curves(run: Run, folder: Path) -> list[Chart]:
+    table, (time, w) = read_table(folder / "table.csv"), slip(run)
+    theirs = Curve("LIGGGHTS, drag and dragged fluid as measured", table["time"], table["velocity"], reference=True)
+    difference = (w - np.interp(time, table["time"], table["velocity"])) / table["velocity"][-1]
+    return [Chart("Slip after release", "time", "w", (theirs, Curve("MaPPM", time, w))),
+            Chart("Difference from LIGGGHTS", "time", "over w at the end", (Curve("MaPPM", time, difference),))]
