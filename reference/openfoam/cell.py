@@ -27,6 +27,7 @@ class Cell:
     side: float = 1.0
     speed: float = 1.0  # the superficial velocity
     positions: tuple[tuple[float, ...], ...] = ()  # of the bodies, from a corner of the cell
+    file: str = ""  # of the scene, for messages
 
     @property
     def solid(self) -> float:
@@ -143,4 +144,5 @@ def read_cell(file: Path, overrides: list[str]) -> Cell:
         side,
         speed,
         tuple(map(tuple, positions.tolist())),
+        str(file),
     )
