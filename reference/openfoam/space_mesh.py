@@ -1,6 +1,7 @@
 """Unstructured mesh of a periodic cube of side 1 with spheres cut out, made by snappyHexMesh.
 
-Cubes, 2 N along an edge, halved near the spheres, whose surface the cells there are moved to.
+Cubes, 2 N along an edge, halved near the spheres and again at their surface, which
+the points there are moved to.
 """
 
 from pathlib import Path
@@ -12,7 +13,7 @@ from reference.openfoam.case_files import foam_file
 from reference.openfoam.run import run
 
 PROGRAMS = ("blockMesh", "snappyHexMesh")
-REFINED = 1  # times that cells are halved at a surface
+NEAR, AT_SURFACE = 1, 2  # times that cells are halved within a quarter of a radius of a surface, and at it
 QUALITY = """maxNonOrtho 65; maxBoundarySkewness 20; maxInternalSkewness 4; maxConcave 80; minVol 1e-20;
 minTetQuality -1e30; minArea -1; minTwist 0.02; minDeterminant 0.001; minFaceWeight 0.05; minVolRatio 0.01;
 minTriangleTwist -1; nSmoothScale 4; errorReduction 0.75;"""
@@ -40,8 +41,8 @@ def snappy_dict(positions: np.ndarray, radius: float) -> str:
         f"{name} {{ type searchableSphere; centre {vector(position)}; radius {radius:.15g}; }}"
         for name, position in zip(names, positions, strict=True)
     )
-    surfaces = " ".join(f"{name} {{ level ({REFINED} {REFINED}); patchInfo {{ type wall; }} }}" for name in names)
-    regions = " ".join(f"{name} {{ mode distance; levels (({radius / 4:.6g} {REFINED})); }}" for name in names)
+    surfaces = " ".join(f"{name} {{ level ({AT_SURFACE} {AT_SURFACE}); patchInfo {{ type wall; }} }}" for name in names)
+    regions = " ".join(f"{name} {{ mode distance; levels (({radius / 4:.6g} {NEAR})); }}" for name in names)
     return f"""castellatedMesh true; snap true; addLayers false;
 geometry {{ {spheres} }}
 castellatedMeshControls {{ maxLocalCells 10000000; maxGlobalCells 10000000; minRefinementCells 0;
