@@ -42,7 +42,7 @@ def arguments(given: list[str]) -> argparse.Namespace:
     several = problems.add_parser("bodies", help="total drag on several fixed discs or spheres")
     for command in (one, several):
         command.add_argument("--scene", type=Path, required=True, metavar="FILE")
-        command.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a key of the scene")
+        command.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a key of it")
         command.add_argument("--out", type=Path, required=True, metavar="DIR")
         command.add_argument("--jobs", type=int, default=1, metavar="K", help="levels run at a time")
     one.add_argument("--stored", nargs="?", const="", metavar="FILE",
@@ -54,9 +54,9 @@ def arguments(given: list[str]) -> argparse.Namespace:
     for command in (one, several, keep):
         command.add_argument("--levels", required=True, metavar="N,N", help=LEVELS)
     for command in (one, keep):
-        command.add_argument("--transient", action="store_true", help="over time: mean drag, and period of a flow that sheds")
+        command.add_argument("--transient", action="store_true", help="over time: mean drag, and period where it sheds")
         command.add_argument("--end", type=float, default=30.0, metavar="T",
-                             help="of a transient run, box sides over superficial velocity; the second half is measured")
+                             help="end of it, box sides over superficial velocity; the second half is measured")
     return parser.parse_args(given)
 
 

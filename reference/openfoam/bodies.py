@@ -24,8 +24,8 @@ def bodies_problem(cell: Cell) -> Problem:
     """Throws InputError."""
     shift, clearance = clear_cuts(np.array(cell.positions), cell.radius)
     if clearance < CLEAR * cell.radius:
-        raise InputError(f"{cell.file}: body.0.positions: every cut through the box meets a body, and the mesh needs one along each "
-                         "axis that meets none; move one")
+        raise InputError(f"{cell.file}: body.0.positions: every cut through the box meets a body, and the mesh needs "
+                         "one along each axis that meets none; move one")
     positions = (np.array(cell.positions) + shift) % 1.0
     mesh = plane_mesh if cell.dimension == 2 else space_mesh
 

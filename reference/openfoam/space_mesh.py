@@ -47,11 +47,12 @@ def snappy_dict(positions: np.ndarray, radius: float) -> str:
 geometry {{ {spheres} }}
 castellatedMeshControls {{ maxLocalCells 10000000; maxGlobalCells 10000000; minRefinementCells 0;
 nCellsBetweenLevels 2; features (); refinementSurfaces {{ {surfaces} }} resolveFeatureAngle 30;
-refinementRegions {{ {regions} }} locationInMesh {vector(point_in_fluid(positions))}; allowFreeStandingZoneFaces true; }}
+refinementRegions {{ {regions} }} locationInMesh {vector(point_in_fluid(positions))};
+allowFreeStandingZoneFaces true; }}
 snapControls {{ nSmoothPatch 5; tolerance 2; nSolveIter 50; nRelaxIter 5; nFeatureSnapIter 0; }}
-addLayersControls {{ relativeSizes true; layers {{}} expansionRatio 1; finalLayerThickness 0.5; minThickness 0.1; nGrow 0;
-featureAngle 60; nRelaxIter 3; nSmoothSurfaceNormals 1; nSmoothNormals 3; nSmoothThickness 10; maxFaceThicknessRatio 0.5;
-maxThicknessToMedialRatio 0.3; minMedianAxisAngle 90; nBufferCellsNoExtrude 0; nLayerIter 50; }}
+addLayersControls {{ relativeSizes true; layers {{}} expansionRatio 1; finalLayerThickness 0.5; minThickness 0.1;
+nGrow 0; featureAngle 60; nRelaxIter 3; nSmoothSurfaceNormals 1; nSmoothNormals 3; nSmoothThickness 10;
+maxFaceThicknessRatio 0.5; maxThicknessToMedialRatio 0.3; minMedianAxisAngle 90; nBufferCellsNoExtrude 0; nLayerIter 50; }}
 meshQualityControls {{ {QUALITY} }}
 mergeTolerance 1e-6;"""
 

@@ -1,4 +1,4 @@
-"""Meshes, cases and scenes of reference/openfoam, without OpenFOAM. Oracles: geometry, made-up sequences, made-up signals."""
+"""Meshes, cases and scenes of reference/openfoam, without OpenFOAM. Oracles: geometry, made-up signals."""
 
 import json
 from collections import Counter
@@ -16,7 +16,8 @@ from reference.openfoam.shift import clear_cuts
 from reference.openfoam.store import FOLDER, disagreement, find_stored, read_stored
 from reference.openfoam.transient import analyse, transient_for
 
-SIDES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))  # of a block, seen from outside
+# Of a block, seen from outside.
+SIDES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
 MESHES = [disc_mesh(0.2, 16), sphere_mesh(0.2, 6), box_mesh(4)]
 SCENE = """[box]
 size = [2.0, 2.0]
@@ -183,7 +184,9 @@ def test_bad_scenes_are_named(tmp_path: Path, capsys: pytest.CaptureFixture, ove
         (["--levels", "8,16", "--jobs", "0"], ["--jobs 0", "1"]),
     ],
 )
-def test_bad_options_are_named(tmp_path: Path, capsys: pytest.CaptureFixture, options: list[str], words: list[str]) -> None:
+def test_bad_options_are_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture, options: list[str], words: list[str]
+) -> None:
     assert main(["drag", "--scene", str(scene_file(tmp_path)), "--out", str(tmp_path), *options]) == 2
     message = capsys.readouterr().err
     assert message.count("\n") == 1
@@ -194,8 +197,8 @@ def test_bad_options_are_named(tmp_path: Path, capsys: pytest.CaptureFixture, op
 def test_bodies_that_no_cut_passes_are_named(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     file = scene_file(tmp_path)
     places = "body.0.positions=[[0.4,0.5],[1.0,1.4],[1.6,0.5]]"
-    smaller = ["--set", "body.0.radius=0.39"]  # or they would touch
-    assert main(["bodies", "--scene", str(file), "--out", str(tmp_path), "--levels", "16,32", "--set", places, *smaller]) == 2
+    sets = ["--set", places, "--set", "body.0.radius=0.39"]  # at 0.4 they would touch
+    assert main(["bodies", "--scene", str(file), "--out", str(tmp_path), "--levels", "16,32", *sets]) == 2
     assert capsys.readouterr().err.startswith(f"{file}: body.0.positions: every cut")
 
 
@@ -247,12 +250,13 @@ def test_the_time_step_obeys_both_limits() -> None:
 
 def test_logs_and_fields_are_read(tmp_path: Path) -> None:
     line = "Pressure gradient source: uncorrected Ubar = 1, pressure gradient = {}\n"
-    (tmp_path / "log.simpleFoam").write_text("".join(f"Time = {i}\n" + line.format(0) + line.format(i * 2.5) for i in (1, 2)))
+    steps = (f"Time = {i}\n" + line.format(0) + line.format(i * 2.5) for i in (1, 2))
+    (tmp_path / "log.simpleFoam").write_text("".join(steps))
     assert gradients(tmp_path, "simpleFoam").tolist() == [2.5, 5.0]
     for name in ("0", "2", "10", "constant"):
         (tmp_path / name).mkdir()
     assert latest(tmp_path).name == "10"
-    (tmp_path / "U").write_text("internalField nonuniform List<vector> \n2\n(\n(1 2 3)\n(4 5e-1 -6)\n)\n;\nboundaryField\n{\n}\n")
+    (tmp_path / "U").write_text("internalField nonuniform List<vector> \n2\n(\n(1 2 3)\n(4 5e-1 -6)\n)\n;\nboundary\n")
     assert vectors(tmp_path / "U").tolist() == [[1, 2, 3], [4, 0.5, -6]]
 
 
@@ -272,7 +276,8 @@ def test_a_stored_result_is_found_by_its_cell_alone(file: Path) -> None:
     assert not stored.fits(cell_of(stored.dimension, stored.solid, stored.reynolds * 1.01 + 0.1), stored.transient)
     assert not stored.fits(cell, not stored.transient)
     assert [level.n for level in stored.levels] == sorted({level.n for level in stored.levels})
-    assert stored.version and "reference.openfoam store" in stored.command and all(len(level.checksum) == 64 for level in stored.levels)
+    assert stored.version and "reference.openfoam store" in stored.command
+    assert all(len(level.checksum) == 64 for level in stored.levels)
 
 
 def test_a_level_that_moved_is_told() -> None:
