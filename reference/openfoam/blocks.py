@@ -46,7 +46,7 @@ def _pair(axis: str, low: tuple, high: tuple) -> dict[str, Patch]:
 
 
 def disc_mesh(radius: float, n: int) -> BlockMesh:
-    """n: cells along a side, a multiple of four. Vertices: four of the circle, four of the square; the same at z = 1."""
+    """n: cells along a side, a multiple of four. Vertices: four of circle, four of square; again at z = 1."""
     corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], float)
     plane = np.vstack([corners * radius / math.sqrt(2), corners / 2])
     vertices = np.vstack([np.column_stack([plane, np.full(8, z)]) for z in (0.0, 1.0)])
