@@ -20,8 +20,19 @@ from reference.openfoam.store import Stored, StoredLevel, find_stored, read_stor
 LEVELS = "plane: cells along a side (drag), along a quarter of a disc (bodies); space: along half an edge of the cell"
 
 
-def numbers(text: str) -> list[int]:
-    return [int(part) for part in text.split(",")]
+def levels_of(text: str) -> list[int]:
+    """Throws InputError."""
+    try:
+        return [int(part) for part in text.split(",")]
+    except ValueError:
+        raise InputError(f"--levels {text}: write whole numbers with commas between, as 16,32") from None
+
+
+def options_of(chosen: argparse.Namespace, stored: Stored | None, command: str) -> Options:
+    """Throws InputError."""
+    if chosen.jobs < 1:
+        raise InputError(f"--jobs {chosen.jobs}: must be at least 1")
+    return Options(levels_of(chosen.levels), stored, chosen.jobs, chosen.out, command)
 
 
 def arguments(given: list[str]) -> argparse.Namespace:
@@ -31,7 +42,7 @@ def arguments(given: list[str]) -> argparse.Namespace:
     several = problems.add_parser("bodies", help="total drag on several fixed discs or spheres")
     for command in (one, several):
         command.add_argument("--scene", type=Path, required=True, metavar="FILE")
-        command.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a key of the scene")
+        command.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a key of it")
         command.add_argument("--out", type=Path, required=True, metavar="DIR")
         command.add_argument("--jobs", type=int, default=1, metavar="K", help="levels run at a time")
     one.add_argument("--stored", nargs="?", const="", metavar="FILE",
@@ -41,11 +52,11 @@ def arguments(given: list[str]) -> argparse.Namespace:
     keep.add_argument("--solid", type=float, required=True, help="solids fraction")
     keep.add_argument("--reynolds", type=float, required=True, help="2 rho R U / mu")
     for command in (one, several, keep):
-        command.add_argument("--levels", type=numbers, required=True, metavar="N,N", help=LEVELS)
+        command.add_argument("--levels", required=True, metavar="N,N", help=LEVELS)
     for command in (one, keep):
-        command.add_argument("--transient", action="store_true", help="over time: mean drag, and period of a flow that sheds")
+        command.add_argument("--transient", action="store_true", help="over time: mean drag, and period where it sheds")
         command.add_argument("--end", type=float, default=30.0, metavar="T",
-                             help="of a transient run, box sides over superficial velocity; the second half is measured")
+                             help="end of it, box sides over superficial velocity; the second half is measured")
     return parser.parse_args(given)
 
 
@@ -63,24 +74,25 @@ def run_drag(chosen: argparse.Namespace, command: str) -> None:
     stored = None
     if chosen.stored is not None:
         stored = find_stored(problem.cell, chosen.transient, Path(chosen.stored) if chosen.stored else None)
-    run_problem(problem, Options(chosen.levels, stored, chosen.jobs, chosen.out, command))
+    run_problem(problem, options_of(chosen, stored, command))
 
 
 def run_bodies(chosen: argparse.Namespace, command: str) -> None:
     problem = bodies_problem(read_cell(chosen.scene, chosen.set))
-    run_problem(problem, Options(chosen.levels, None, chosen.jobs, chosen.out, command))
+    run_problem(problem, options_of(chosen, None, command))
 
 
 def run_store(chosen: argparse.Namespace, command: str) -> None:
     """Adds levels to the file of this cell; those that it has are made again if named."""
     cell = cell_of(chosen.dimension, chosen.solid, chosen.reynolds)
     problem = drag_problem(cell, end_of(chosen))
-    check_meshes(problem, chosen.levels)
+    chosen_levels = levels_of(chosen.levels)
+    check_meshes(problem, chosen_levels)
     if missing := missing_of(problem.programs, problem.how_to_get):
         raise InputError(missing)
     file = stored_file(cell, chosen.transient)
     levels = {level.n: level for level in read_stored(file).levels} if file.exists() else {}
-    for n in sorted(set(chosen.levels)):
+    for n in sorted(set(chosen_levels)):
         with tempfile.TemporaryDirectory(prefix="openfoam_") as folder:
             run = problem.run(Path(folder) / "case", n)
         if run.objection:

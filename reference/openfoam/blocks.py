@@ -23,7 +23,9 @@ class Patch:
 
 @dataclass(frozen=True)
 class BlockMesh:
-    """Corners of a block: the bottom, counter-clockwise seen from the top, then the top. Cells are counted, and grow, along 0-1, 0-3, 0-4."""
+    """Corners of a block: the bottom, counter-clockwise seen from the top, then the top. Cells are counted, and grow,
+    along 0-1, 0-3, 0-4.
+    """
 
     vertices: np.ndarray  # (n, 3)
     blocks: tuple[tuple[int, ...], ...]
@@ -44,7 +46,7 @@ def _pair(axis: str, low: tuple, high: tuple) -> dict[str, Patch]:
 
 
 def disc_mesh(radius: float, n: int) -> BlockMesh:
-    """n: cells along a side, a multiple of four. Vertices: the four of the circle, the four of the square; then the same at z = 1."""
+    """n: cells along a side, a multiple of four. Vertices: four of circle, four of square; again at z = 1."""
     corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], float)
     plane = np.vstack([corners * radius / math.sqrt(2), corners / 2])
     vertices = np.vstack([np.column_stack([plane, np.full(8, z)]) for z in (0.0, 1.0)])
@@ -121,7 +123,8 @@ def block_mesh_dict(mesh: BlockMesh) -> str:
     if in_space:
         lines.append(f"geometry {{ {BODY} {{ type searchableSphere; centre (0 0 0); radius {mesh.sphere:.15g}; }} }}")
     lines += ["vertices (", *map(_tuple_text, mesh.vertices), ");", "blocks ("]
-    lines += [f"hex {_tuple_text(b)} {_tuple_text(mesh.cells)} simpleGrading {_tuple_text(growth)}" for b in mesh.blocks]
+    counts = f"{_tuple_text(mesh.cells)} simpleGrading {_tuple_text(growth)}"
+    lines += [f"hex {_tuple_text(block)} {counts}" for block in mesh.blocks]
     lines += [");", "edges (", *(f"arc {i} {j} {_tuple_text(middle)}" for i, j, middle in mesh.arcs), ");"]
     if in_space:
         lines += ["faces (", *(f"project {_tuple_text(face)} {BODY}" for face in mesh.patches[BODY].faces), ");"]

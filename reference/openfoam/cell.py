@@ -1,4 +1,4 @@
-"""A scene as OpenFOAM computes it: bodies that do not move, in a periodic cell of side 1 with a superficial velocity of 1.
+"""A scene as OpenFOAM computes it: bodies at rest in a periodic cell of side 1, with a superficial velocity of 1.
 
 Density is 1 too, so the kinematic viscosity is 2 r / Re, with r the radius over the side and Re on the diameter.
 """
@@ -27,6 +27,7 @@ class Cell:
     side: float = 1.0
     speed: float = 1.0  # the superficial velocity
     positions: tuple[tuple[float, ...], ...] = ()  # of the bodies, from a corner of the cell
+    file: str = ""  # of the scene, for messages
 
     @property
     def solid(self) -> float:
@@ -109,7 +110,7 @@ def _check_gaps(reader: _Reader, positions: np.ndarray, radius: float) -> None:
 
 
 def read_cell(file: Path, overrides: list[str]) -> Cell:
-    """The cell of a scene with one kind of body, a disc or a sphere, whose places are written out. Throws InputError."""
+    """The cell of a scene with one kind of body, disc or sphere, whose places are written out. Throws InputError."""
     try:
         reader = _Reader(file, read_scene(file, overrides))
     except FileNotFoundError:
@@ -132,7 +133,7 @@ def read_cell(file: Path, overrides: list[str]) -> Cell:
     reynolds = 2 * radius * speed * reader.number("fluid.density") / reader.number("fluid.viscosity")
     force = reader.vector("force.fluid", dimension)
     if not np.linalg.norm(force) > 0:
-        raise reader.fail("force.fluid", reader.entry("force.fluid"), "must not be 0; it gives the direction of the flow")
+        raise reader.fail("force.fluid", reader.entry("force.fluid"), "must not be 0; it gives the direction")
     positions = reader.positions(dimension) / side
     _check_gaps(reader, positions, radius / side)
     return Cell(
@@ -143,4 +144,5 @@ def read_cell(file: Path, overrides: list[str]) -> Cell:
         side,
         speed,
         tuple(map(tuple, positions.tolist())),
+        str(file),
     )

@@ -17,7 +17,8 @@ MULTIPLE = {2: 4, 3: 2}  # the blocks hold 0.75 N and 1.5 N cells outwards
 def drag_problem(cell: Cell, end: float | None = None) -> Problem:
     """`end`: run over time until then, in sides over superficial velocity. Throws InputError."""
     if len(cell.positions) != 1:
-        raise InputError(f"body.0.positions: {len(cell.positions)} bodies; `drag` is for one, take the problem `bodies`")
+        many = f"{len(cell.positions)} bodies"
+        raise InputError(f"{cell.file}: body.0.positions: {many}; `drag` is for one, take the problem `bodies`")
     if end is not None and cell.dimension == 3:
         raise InputError("--transient: works in the plane alone; leave it out for a scene in space")
     if end is not None and end <= 0:

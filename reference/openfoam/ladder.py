@@ -53,7 +53,8 @@ def check_meshes(problem: Problem, levels: list[int]) -> None:
     """Throws InputError where a level cannot be made."""
     for n in levels:
         if n < problem.smallest or n % problem.multiple:
-            raise InputError(f"--levels {n}: the mesh needs a multiple of {problem.multiple} from {problem.smallest} on")
+            fix = f"the mesh needs a multiple of {problem.multiple} from {problem.smallest} on"
+            raise InputError(f"--levels {n}: {fix}")
 
 
 def check_levels(problem: Problem, options: Options) -> None:
@@ -103,7 +104,8 @@ def quantities_of(
 def write_table(history: np.ndarray, cell: Cell, out: Path) -> None:
     out.mkdir(parents=True, exist_ok=True)
     rows = history * [cell.side / cell.speed, 1, 1]
-    np.savetxt(out / TABLE, rows, "%.7g", ",", header="time [s or of the scene],F / (mu U) [-],force across / (mu U) [-]", comments="")
+    columns = "time [s or of the scene],F / (mu U) [-],force across / (mu U) [-]"
+    np.savetxt(out / TABLE, rows, "%.7g", ",", header=columns, comments="")
 
 
 def inputs_of(runs: list[LevelRun]) -> str:

@@ -49,7 +49,8 @@ def steady_objection(folder: Path, cell: Cell, fluid_volume: float) -> str:
     balance = abs(force / (gradient[-1] * fluid_volume) - 1)
     objections = []
     if not drift < DRIFT:
-        objections.append(f"drag drifts by {drift:.1e} over the last tenth of the iterations: no steady state, try --transient")
+        where = "over the last tenth of the iterations"
+        objections.append(f"drag drifts by {drift:.1e} {where}: no steady state, try --transient")
     if not balance < BALANCE:
         objections.append(f"force on the surface and body force differ by {balance:.1e}")
     return "; ".join(objections)

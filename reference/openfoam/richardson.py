@@ -47,7 +47,7 @@ def _index(sizes, values, order: float, safety: float) -> float:
 
 
 def _even_fit(sizes: tuple[float, float, float], values: tuple[float, float, float]) -> float:
-    """The value at 0 of the polynomial in h^2 of degree 2 through three levels: errors of a scheme of second order go as h^2, h^4."""
+    """The value at 0 of the polynomial in h^2 of degree 2 through three levels: errors go as h^2, h^4."""
     squares = [size**2 for size in sizes]
     total = 0.0
     for i, value in enumerate(values):

@@ -1,6 +1,7 @@
 """Unstructured mesh of a periodic cube of side 1 with spheres cut out, made by snappyHexMesh.
 
-Cubes, 2 N along an edge, halved near the spheres, whose surface the cells there are moved to.
+Cubes, 2 N along an edge, halved within a quarter of a radius of the spheres, whose
+surface the points there are moved to.
 """
 
 from pathlib import Path
@@ -12,7 +13,7 @@ from reference.openfoam.case_files import foam_file
 from reference.openfoam.run import run
 
 PROGRAMS = ("blockMesh", "snappyHexMesh")
-REFINED = 1  # times that cells are halved at a surface
+REFINED = 1  # times that cells are halved at a surface; with 2 the order falls to 1.5
 QUALITY = """maxNonOrtho 65; maxBoundarySkewness 20; maxInternalSkewness 4; maxConcave 80; minVol 1e-20;
 minTetQuality -1e30; minArea -1; minTwist 0.02; minDeterminant 0.001; minFaceWeight 0.05; minVolRatio 0.01;
 minTriangleTwist -1; nSmoothScale 4; errorReduction 0.75;"""
@@ -46,11 +47,13 @@ def snappy_dict(positions: np.ndarray, radius: float) -> str:
 geometry {{ {spheres} }}
 castellatedMeshControls {{ maxLocalCells 10000000; maxGlobalCells 10000000; minRefinementCells 0;
 nCellsBetweenLevels 2; features (); refinementSurfaces {{ {surfaces} }} resolveFeatureAngle 30;
-refinementRegions {{ {regions} }} locationInMesh {vector(point_in_fluid(positions))}; allowFreeStandingZoneFaces true; }}
+refinementRegions {{ {regions} }} locationInMesh {vector(point_in_fluid(positions))};
+allowFreeStandingZoneFaces true; }}
 snapControls {{ nSmoothPatch 5; tolerance 2; nSolveIter 50; nRelaxIter 5; nFeatureSnapIter 0; }}
-addLayersControls {{ relativeSizes true; layers {{}} expansionRatio 1; finalLayerThickness 0.5; minThickness 0.1; nGrow 0;
-featureAngle 60; nRelaxIter 3; nSmoothSurfaceNormals 1; nSmoothNormals 3; nSmoothThickness 10; maxFaceThicknessRatio 0.5;
-maxThicknessToMedialRatio 0.3; minMedianAxisAngle 90; nBufferCellsNoExtrude 0; nLayerIter 50; }}
+addLayersControls {{ relativeSizes true; layers {{}} expansionRatio 1; finalLayerThickness 0.5; minThickness 0.1;
+nGrow 0; featureAngle 60; nRelaxIter 3; nSmoothSurfaceNormals 1; nSmoothNormals 3; nSmoothThickness 10;
+maxFaceThicknessRatio 0.5; maxThicknessToMedialRatio 0.3; minMedianAxisAngle 90; nBufferCellsNoExtrude 0;
+nLayerIter 50; }}
 meshQualityControls {{ {QUALITY} }}
 mergeTolerance 1e-6;"""
 

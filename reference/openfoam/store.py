@@ -85,8 +85,8 @@ def find_stored(cell: Cell, transient: bool, file: Path | None) -> Stored:
     if fitting:
         return fitting[0]
     raise InputError(
-        f"--stored {file or FOLDER}: nothing for a solids fraction of {cell.solid:.6g}, Re {cell.reynolds:.6g} and this "
-        "direction; make it with python3 -m reference.openfoam store, or leave --stored out"
+        f"--stored {file or FOLDER}: nothing for a solids fraction of {cell.solid:.6g}, Re {cell.reynolds:.6g} and "
+        "this direction; make it with python3 -m reference.openfoam store, or leave --stored out"
     )
 
 

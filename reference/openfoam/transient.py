@@ -13,7 +13,7 @@ from reference.openfoam.cell import Cell
 from reference.openfoam.level import LevelRun, drag_scale, make
 from reference.openfoam.run import run, say
 
-COURANT = 0.4  # of the superficial velocity in the cells at the wall; the flow is slower there, and cells widen outwards
+COURANT = 0.4  # of the superficial velocity in the cells at the wall; they widen outwards, where the flow is faster
 DIFFUSION = 1.0  # nu step / width^2 of the cells at the wall; above it the flow diverges
 SHEDS = 1e-3  # force across the flow, rms over mean drag, from which on a flow counts as shedding
 CROSSINGS = 5  # of the mean of that force, upwards, to tell a period
@@ -22,7 +22,7 @@ STEADY = 1e-3  # change of the drag between the halves of the window, relative, 
 
 @dataclass(frozen=True)
 class History:
-    """What the force did after it had settled: mean drag and period, with standard uncertainties, in the units of its input."""
+    """What the force did after it had settled, with standard uncertainties, in the units of the input."""
 
     drag: float
     drag_uncertainty: float
