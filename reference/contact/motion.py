@@ -134,8 +134,11 @@ def tangential_velocity(motion: Motion) -> float:
 
 
 def spin(motion: Motion) -> float:
-    """Of body 0 after the impact, about n x t: positive for a ball that rolls along t."""
+    """Of body 0 after the impact, about n x t: positive for a ball that rolls along t. Without t, about its first axis."""
     n, t = motion.normal, motion.tangent
+    if not t.any():
+        first = motion.spin[0, 0]
+        return float(motion.spin[-1, 0] @ first) / (float(np.linalg.norm(first)) or 1.0)
     axis = np.cross(n, t) if motion.scene.dimension == 3 else np.array([n[0] * t[1] - n[1] * t[0]])
     return float(motion.spin[-1, 0] @ axis)
 

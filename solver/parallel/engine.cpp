@@ -160,6 +160,7 @@ void ParallelEngine<D>::explain_pairs() {
 /// An FP also counts the matter of other solids within rcut. Only FPs of solids that near each other are looked at.
 template <int D>
 void ParallelEngine<D>::sum_frozen_densities() {
+  if (frozen_.empty()) return;  // solids alone: no FP is placed
   std::vector<std::size_t> first(bodies_.size() + 1, frozen_.size());
   for (std::size_t k = frozen_.size(); k-- > 0;) first[frozen_[k].solid] = k;
   for (std::size_t b = bodies_.size(); b-- > 0;) first[b] = std::min(first[b], first[b + 1]);
