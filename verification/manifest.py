@@ -32,7 +32,7 @@
     source = "Sangani and Acrivos 1982, table 1"
     goal = 0.03                     # largest relative error that can count as correct; absolute where the reference is 0
     order = [1.5, 2.5]              # band of the observed order; may be left out
-    extrapolated = 0.01             # goal of the value extrapolated over the levels, judged as well; may be left out
+    extrapolated = 0.01             # goal of the value extrapolated over three levels or more, judged as well; may be left out
 
     [[case.level]]                  # from coarse to fine; `set = []` is the scene as it stands
     set = ["fluid.spacing=0.125", "fluid.rcut=0.375"]
