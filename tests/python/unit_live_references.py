@@ -74,6 +74,15 @@ def test_each_point_is_a_case_with_its_own_scene_and_runs(tmp_path: Path) -> Non
     assert Job(dense, (*base, "fluid.spacing=0.2")).weight == pytest.approx(1 / 8)
 
 
+def test_a_point_that_stalls_has_no_band(tmp_path: Path) -> None:
+    file = written(tmp_path, "goal = 0.02", "goal = 0.02\norder = [1.0, 2.0]")
+    text = file.read_text().replace("[[case.level]]", "[[case.level]]\nset = []\n[[case.level]]", 1)
+    file.write_text(text.replace('name = "dense"', 'name = "dense"\nstalls = "noise"'))
+    thin, dense = read_cases(file)
+    assert (thin.observables[0].order, thin.stalls) == ((1.0, 2.0), "")
+    assert (dense.observables[0].order, dense.stalls) == (None, "noise")
+
+
 def test_points_are_found_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     written(tmp_path)
     monkeypatch.setenv("MAPPM_CASES", str(tmp_path))
