@@ -220,7 +220,7 @@ def judge(case: Case, tier: str, runs: dict[tuple[str, ...], Run]) -> list[Outco
         outcomes.append(
             Outcome(observable, levels[-1], sources, tuple(heights), tuple(levels), convergence, case.stalls)
         )
-        if observable.extrapolated is not None:
+        if observable.extrapolated is not None and len(levels) > 2:
             outcomes.append(_at_zero(outcomes[-1]))
     return outcomes
 

@@ -13,6 +13,7 @@
     set = ["box.size=[5.6, 5.6]"]   # overrides, which come before those of the level
     tier = "full"                   # that of the case if left out
     cost = 20                       # likewise
+    stalls = "why the error stops falling"  # of this point, whose observables then have no band for their order
 
     [case.live]                     # a reference code, run after the solver: python3 -m reference.CODE PROBLEM --scene ...
     code = "openfoam"
@@ -32,7 +33,7 @@
     source = "Sangani and Acrivos 1982, table 1"
     goal = 0.03                     # largest relative error that can count as correct; absolute where the reference is 0
     order = [1.5, 2.5]              # band of the observed order; may be left out
-    extrapolated = 0.01             # goal of the value extrapolated over the levels, judged as well; may be left out
+    extrapolated = 0.01             # goal of the value extrapolated over three levels or more, judged as well; may be left out
 
     [[case.level]]                  # from coarse to fine; `set = []` is the scene as it stands
     set = ["fluid.spacing=0.125", "fluid.rcut=0.375"]
@@ -180,8 +181,9 @@ def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
     found = []
     for i, table in enumerate(tables):
         at = f"{where}.point[{i}]"
-        _only(table, ("name", "set", "tier", "cost"), at)
+        _only(table, ("name", "set", "tier", "cost", "stalls"), at)
         base = _texts(table, "set", at)
+        stalls = " ".join(_entry(table, "stalls", str, at, "").split())
         try:
             scene = with_overrides(copy.deepcopy(case.scene), base)
         except (KeyError, IndexError, ValueError) as error:
@@ -190,6 +192,8 @@ def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
             case, name=f"{case.name}.{_entry(table, 'name', str, at)}", base=base, scene=scene,
             tier=_choice(table, "tier", TIERS, at, case.tier), cost=float(_entry(table, "cost", NUMBER, at, case.cost)),
             levels=tuple(replace(level, overrides=base + level.overrides) for level in case.levels),
+            stalls=stalls or case.stalls,
+            observables=tuple(replace(one, order=None) for one in case.observables) if stalls else case.observables,
         ))
     if len({point.name for point in found}) < len(found):
         raise CaseError(f"{where}.point: two points have the same name; rename one")

@@ -61,13 +61,26 @@ def _surfaces(scene: dict, box: np.ndarray) -> np.ndarray:
     return np.concatenate(rings)
 
 
+def _seen_from_the_body(run: Run, box: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points and velocities of the PPs. Where the body moves, its velocity and its way are taken off: the reference code holds
+    it in its place."""
+    fluid, body = run.fluid(), run.scene["body"][0]
+    points, velocity = fluid["points"].copy(), fluid["velocity"].copy()
+    if body.get("motion") == "moving":
+        axes = slice(len(box))
+        way = run.solids()["points"][0, axes] - np.array(_centres(body)[0])
+        points[:, axes] = np.mod(points[:, axes] - way, box)
+        velocity[:, axes] -= [in_si(value) for value in body.get("velocity", [0.0] * len(box))]
+    return points, velocity
+
+
 def speeds(run: Run, live: LiveRun) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(box, speed of this code, speed of the reference code), the latter two (NODES, NODES), NaN inside of the fixed solids."""
     box = np.array([in_si(side) for side in run.scene["box"]["size"]])
     x, y = np.meshgrid(*((np.arange(NODES) + 0.5) / NODES * side for side in box[:2]))
-    fluid, field = run.fluid(), np.load(live.folder / live.result.field)
+    field = np.load(live.folder / live.result.field)
     half = SLAB * in_si(run.scene["fluid"]["spacing"])
-    ours = _plane(fluid["points"], fluid["velocity"], box, half)
+    ours = _plane(*_seen_from_the_body(run, box), box, half)
     theirs = _plane(field["points"], field["velocity"], box, np.inf)
     solid, surface = _in_bodies(run.scene, box, x, y), _surfaces(run.scene, box)
     grids = []

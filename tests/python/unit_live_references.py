@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -10,7 +11,7 @@ from reference.live import Quantity, Result, read_result, write_result
 from reference.scene import in_si, with_overrides
 from verification.case import Observable
 from verification.errors import CaseError
-from verification.judge import CORRECT, OPEN, SKIPPED, WRONG, Outcome, _at_zero
+from verification.judge import CORRECT, OPEN, SKIPPED, WRONG, Outcome, _at_zero, judge
 from verification.ladder import extrapolated
 from verification.manifest import find_cases, read_cases
 from verification.observables import Measured
@@ -71,6 +72,15 @@ def test_each_point_is_a_case_with_its_own_scene_and_runs(tmp_path: Path) -> Non
     base = ("box.size=[2.0, 2.0]", "body.0.radius=0.5")
     assert [job.overrides for job in jobs_of(dense, "quick")] == [(*base, "fluid.spacing=0.2"), base]
     assert Job(dense, (*base, "fluid.spacing=0.2")).weight == pytest.approx(1 / 8)
+
+
+def test_a_point_that_stalls_has_no_band(tmp_path: Path) -> None:
+    file = written(tmp_path, "goal = 0.02", "goal = 0.02\norder = [1.0, 2.0]")
+    text = file.read_text().replace("[[case.level]]", "[[case.level]]\nset = []\n[[case.level]]", 1)
+    file.write_text(text.replace('name = "dense"', 'name = "dense"\nstalls = "noise"'))
+    thin, dense = read_cases(file)
+    assert (thin.observables[0].order, thin.stalls) == ((1.0, 2.0), "")
+    assert (dense.observables[0].order, dense.stalls) == (None, "noise")
 
 
 def test_points_are_found_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -185,6 +195,43 @@ def test_an_objection_on_any_level_bars_the_extrapolation() -> None:
     given = Observable("drag", "F", 50.0, 0.01, "nobody at all", goal=0.02, extrapolated=0.01)
     levels = (Measured(51.0, 0.0, "not settled"), Measured(50.2, 0.0), Measured(50.1, 0.0))
     assert _at_zero(Outcome(given, levels[-1], {}, tuple(H), levels)).verdict == OPEN
+
+
+LEVELS = """
+[case]
+purpose = "p"
+tier = "quick"
+cost = 1
+[[case.observable]]
+name = "found"
+symbol = "F"
+reference = 50.0
+uncertainty = 0.1
+source = "nobody at all"
+goal = 0.02
+extrapolated = 0.01
+[[case.level]]
+set = ["fluid.spacing=0.4"]
+[[case.level]]
+set = ["fluid.spacing=0.2"]
+[[case.level]]
+set = ["fluid.spacing=0.1"]
+tier = "full"
+"""
+
+
+def test_a_tier_of_two_levels_is_not_extrapolated(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(LEVELS)
+    (tmp_path / "measure.py").write_text("""from verification.observables import Measured
+
+def found(run):
+    return Measured(50.0 + run.scene["fluid"]["spacing"], 0.0)
+""")
+    (case,) = read_cases(tmp_path / "case.toml")
+    runs = {(f"fluid.spacing={h}",): SimpleNamespace(scene={"fluid": {"spacing": h}}) for h in (0.4, 0.2, 0.1)}
+    assert [outcome.observable.symbol for outcome in judge(case, "quick", runs)] == ["F"]
+    _, at_zero = judge(case, "full", runs)
+    assert at_zero.measured.value == pytest.approx(50.0)  # first order, exactly
 
 
 def test_quantities_and_overrides_of_a_scene_are_read_as_the_solver_does() -> None:

@@ -49,6 +49,17 @@ def test_fields_are_brought_to_one_grid(tmp_path: Path, factor: float) -> None:
     assert np.nanmean(theirs / np.where(ours > 0.1, ours, np.nan)) == pytest.approx(factor, abs=0.01)
 
 
+def test_a_body_that_moves_is_seen_at_rest(tmp_path: Path) -> None:
+    fixed, live = both(tmp_path, 1.0)
+    way, own = np.array([0.7, -1.3]), np.array([3.0, -2.0])
+    body = SCENE["body"][0] | {"motion": "moving", "velocity": list(own)}
+    at_rest = fixed.fluid()
+    moved = {"points": np.mod(at_rest["points"] + way, SIDE), "velocity": at_rest["velocity"] + own}
+    moving = SimpleNamespace(scene=SCENE | {"body": [body]}, fluid=lambda: moved,
+                             solids=lambda: {"points": np.array([[*np.mod([0.1 + way[0], 1.0 + way[1]], SIDE), 0.0]])})
+    assert np.allclose(speeds(moving, live)[1], speeds(fixed, live)[1], atol=1e-6, equal_nan=True)
+
+
 def test_the_picture_is_written(tmp_path: Path) -> None:
     compare_fields(*both(tmp_path, 1.1), "title", tmp_path / "beside.png")
     assert (tmp_path / "beside.png").stat().st_size > 10_000
