@@ -1,12 +1,15 @@
 """Published figures, looked up for a scene. README.md beside this file lists the tables and what they are worth."""
 
-from reference.published import arrays
+from reference.published import arrays, random_arrays, sphere, ten_cate
 from reference.published.value import Published
 
 TABLES = {
     "square_array_stokes": arrays.square_array_stokes,
     "simple_cubic_stokes": arrays.simple_cubic_stokes,
     "simple_cubic_hasimoto": arrays.simple_cubic_hasimoto,
+    "isolated_sphere": sphere.isolated_sphere,
+    "random_spheres": random_arrays.random_spheres,
+    "ten_cate_u_max": ten_cate.largest_velocity,
 }
 
 

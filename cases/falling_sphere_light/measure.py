@@ -1,0 +1,12 @@
+"""The measures of the heavy sphere."""
+
+from cases.falling_sphere.measure import (
+    curves,
+    from_history,
+    live_curves,
+    live_options,
+    relaxation_time,
+    terminal_velocity,
+)
+
+__all__ = ["curves", "from_history", "live_curves", "live_options", "relaxation_time", "terminal_velocity"]

@@ -1,0 +1,36 @@
+"""A sphere that falls in a tank: its largest velocity, and its fall."""
+
+import numpy as np
+
+from reference.published import look_up
+from verification.curve import Chart, Curve
+from verification.observables import Measured
+from verification.series import read_table
+from verification.solver import Run
+
+DIAMETER = 0.015
+
+
+def _fall(run: Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(time, velocity downwards, gap between sphere and bottom), SI."""
+    table = read_table(run.folder / "solids.csv")
+    return table["time"], -table["velocity_z"], table["position_z"] - DIAMETER / 2
+
+
+def u_max(run: Run) -> Measured:
+    """Largest of the mean over 3 % of the run; uncertainty, the scatter about it."""
+    _, velocity, _ = _fall(run)
+    width = max(3, len(velocity) // 33)
+    means = np.convolve(velocity, np.full(width, 1 / width), "valid")
+    first = int(np.argmax(means))
+    scatter = float(np.std(velocity[first : first + width]))
+    objection = "still faster at the end; run longer" if first + width >= len(velocity) - 1 else ""
+    return Measured(float(means[first]), scatter, objection)
+
+
+def curves(run: Run) -> list[Chart]:
+    time, velocity, gap = _fall(run)
+    measured = look_up("ten_cate_u_max", run.scene).value
+    level = Curve("largest velocity measured", time, np.full_like(time, measured), reference=True)
+    return [Chart("Fall of the sphere", "time (s)", "velocity (m/s)", (level, Curve("MaPPM", time, velocity))),
+            Chart("Over the gap below the sphere", "gap / diameter", "velocity (m/s)", (Curve("MaPPM", gap / DIAMETER, velocity),))]
