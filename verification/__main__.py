@@ -12,6 +12,7 @@ from verification.errors import CaseError, SolverError
 from verification.manifest import all_cases, find_cases
 from verification.result import run_case, run_with
 from verification.solver import ROOT, Options, run
+from verification.stored import store
 
 
 SKIPPED_CODE = 77  # what ctest takes for skipped
@@ -32,10 +33,13 @@ def _run_alone(case: Case, folder: Path, arguments: argparse.Namespace) -> None:
 
 def run_named(arguments: argparse.Namespace) -> int:
     """The case, or all its points of the tier. Returns 0, 1 where something does not hold, else 77 where something was skipped."""
-    found = find_cases(arguments.case)
+    if arguments.set and arguments.store:
+        raise CaseError("--store keeps a case as it is declared; leave out --set or --store")
+    found = []
+    for name in arguments.case:
+        points = find_cases(name)
+        found += [case for case in points if len(points) == 1 or arguments.tier == "full" or case.tier == "quick"]
     folder = arguments.out or ROOT / "runs"
-    if len(found) > 1:
-        found = [case for case in found if arguments.tier == "full" or case.tier == "quick"]
     results = []
     for case in found:
         if not case.judged:
@@ -45,6 +49,8 @@ def run_named(arguments: argparse.Namespace) -> int:
             results.append(run_with(case, folder, tuple(arguments.set), arguments.ranks))
         else:
             results.append(run_case(case, arguments.tier, folder, arguments.ranks, say=lambda text: print(text, file=sys.stderr)))
+        if arguments.store:
+            store(results[-1])
         print("\n".join(f"{case.name}: {line}" if len(found) > 1 else line for line in results[-1].lines), flush=True)
     if not all(result.holds for result in results):
         return 1
@@ -78,12 +84,14 @@ def _parser() -> argparse.ArgumentParser:
     commands.add_parser("list", help="the cases, their tier and their cost in core-seconds")
 
     one = commands.add_parser("run", help="run a case and print a line an observable")
-    one.add_argument("case", help="name of a folder of cases/, CASE.POINT for one of its points, or the path of a scene")
+    one.add_argument("case", nargs="+", help="name of a folder of cases/, CASE.POINT for one of its points, or the path of a scene")
     one.add_argument("--set", metavar="KEY=VALUE", action="append", default=[],
                      help="override a key of the scene: then it runs alone, without levels, and the goals alone decide")
     one.add_argument("--tier", choices=TIERS, default="quick", help="full adds the levels that take long")
     one.add_argument("--out", type=Path, help="folder of the runs (default runs), which come to lie in OUT/CASE")
     one.add_argument("--ranks", type=int, default=1, help="ranks of the parallel solver; 0 is the serial reference")
+
+    one.add_argument("--store", action="store_true", help="keep the results in reports/published/full.json, for the report")
 
     report = commands.add_parser("report", help="write the report")
     report.add_argument("--tier", choices=TIERS, default="quick")

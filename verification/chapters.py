@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from verification.figures import CaseFigures
-from verification.judge import Outcome
-from verification.result import CaseResult
+from verification.judge import CORRECT, Outcome
+from verification.result import CaseResult, Exactness
 
 
 @dataclass(frozen=True)
@@ -19,6 +19,60 @@ class Family:
     @property
     def holds(self) -> bool:
         return all(result.holds for result in self.results)
+
+    @property
+    def exact(self) -> Exactness:
+        """Of all points together."""
+        parts = [result.exact for result in self.results]
+        defects = tuple(defect for part in parts for defect in part.defects)
+        return Exactness(sum(part.runs for part in parts), sum(part.samples for part in parts), defects)
+
+
+LISTED = 3  # points of a family that are listed one by one in tables of all cases
+
+
+@dataclass(frozen=True)
+class Row:
+    """One observable of a case, or of many points of a family by the one that is the furthest from its reference."""
+
+    name: str  # of the case, or of the family
+    result: CaseResult
+    outcome: Outcome
+    points: int = 1  # that it stands for
+
+
+def _distance(outcome: Outcome) -> float:
+    return abs(outcome.error) / (outcome.observable.goal or 1.0)
+
+
+def _rows_of(family: Family) -> list[Row]:
+    pairs = [(result, outcome) for result in family.results for outcome in result.outcomes]
+    if len(family.results) <= LISTED:
+        return [Row(result.case.name, result, outcome) for result, outcome in pairs]
+    rows, alike = [], {}
+    for result, outcome in pairs:
+        if outcome.verdict == CORRECT and outcome.holds:
+            alike.setdefault(outcome.observable.against, []).append((result, outcome))
+        else:
+            rows.append(Row(result.case.name, result, outcome))
+    for members in alike.values():
+        result, outcome = max(members, key=lambda member: _distance(member[1]))
+        rows.append(Row(family.name if len(members) > 1 else result.case.name, result, outcome, len(members)))
+    return rows
+
+
+def rows_of(families: list[Family]) -> list[Row]:
+    """Of tables and charts of all cases: what does not hold, and what was skipped, always stands by itself."""
+    return [row for family in families for row in _rows_of(family)]
+
+
+def families_of(results: list[CaseResult]) -> list[Family]:
+    """Those first in which something does not hold, then by name."""
+    found: dict[str, list[CaseResult]] = {}
+    for result in results:
+        found.setdefault(result.case.family, []).append(result)
+    families = [Family(name, tuple(sorted(members, key=lambda result: result.case.name))) for name, members in found.items()]
+    return sorted(families, key=lambda family: (family.holds, family.name))
 
 
 @dataclass(frozen=True)
@@ -40,22 +94,13 @@ class Chapter:
         return live.version or live.missing or live.objection
 
     @property
-    def rows(self) -> list[tuple[CaseResult, Outcome]]:
-        return [(result, outcome) for result in self.results for outcome in result.outcomes if outcome.observable.live]
+    def rows(self) -> list[Row]:
+        return [row for row in rows_of(families_of(list(self.results))) if row.outcome.observable.live]
 
     @property
     def shown(self) -> list[CaseResult]:
         """What the code was run for without a verdict."""
         return [result for result in self.results if not result.outcomes]
-
-
-def families_of(results: list[CaseResult]) -> list[Family]:
-    """Those first in which something does not hold, then by name."""
-    found: dict[str, list[CaseResult]] = {}
-    for result in results:
-        found.setdefault(result.case.family, []).append(result)
-    families = [Family(name, tuple(sorted(members, key=lambda result: result.case.name))) for name, members in found.items()]
-    return sorted(families, key=lambda family: (family.holds, family.name))
 
 
 def _pictures(results: list[CaseResult], figures: dict[str, CaseFigures]) -> tuple[Path, ...]:

@@ -18,6 +18,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (after the choice of a backend wi
 
 STYLE = {"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.3,
          "svg.fonttype": "none", "svg.hashsalt": "mappm"}
+NAMED = 12  # observables that a chart of all of them names
 MOST_VECTOR_POINTS = 300  # of a curve; those with more are drawn as pixels
 BLUE, GREEN, RED, GREY, DARK = "#1f5a96", "#17663a", "#b00020", "#888888", "#333333"
 
@@ -144,13 +145,16 @@ def draw(chart: Chart, file: Path) -> None:
 
 
 def trend(history: list[dict], keys: list[str], file: Path) -> None:
-    """|error| over goal of every observable, report by report."""
+    """|error| over goal of every observable, report by report; the furthest of the last report are named."""
+    last = history[-1]["errors"]
+    named = set(sorted(last, key=lambda key: -abs(last[key]["error"] or 0) / (last[key]["goal"] or 1))[:NAMED])
     with figure_of(file, 8, 3.4) as axes:
         for key in keys:
             points = [(k, abs(entry["errors"][key]["error"]) / entry["errors"][key]["goal"])
                       for k, entry in enumerate(history) if key in entry["errors"] and entry["errors"][key]["goal"] > 0]
             if points:
-                axes.plot(*zip(*points, strict=True), "o-", markersize=3, linewidth=1, label=key)
+                style = {"label": key} if key in named else {"color": GREY, "alpha": 0.4}
+                axes.plot(*zip(*points, strict=True), "o-", markersize=3, linewidth=1, **style)
         axes.axhline(1.0, color=GREEN, linewidth=1)
         axes.set_yscale("log")
         axes.set_xticks(range(len(history)), [f"{entry['date'][:10]}\n{entry['commit'][:8]}" for entry in history], fontsize=8)

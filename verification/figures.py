@@ -5,7 +5,7 @@ from pathlib import Path
 
 from verification import charts
 from verification.curve import Chart
-from verification.judge import SKIPPED, own
+from verification.judge import SKIPPED, Outcome, own
 from verification.pictures import velocity_field
 from verification.result import CaseResult
 from verification.side_by_side import compare_fields
@@ -67,12 +67,11 @@ def family_figures(results: list[CaseResult], out: Path) -> tuple[Path, ...]:
     return tuple(_drawn(curves(results) if curves else [], f"{results[0].case.family}_family", out))
 
 
-def suite_figures(results: list[CaseResult], history: list[dict], out: Path) -> dict[str, Path]:
-    """The overview (also as PNG, for the summary), and the trend where there is an earlier report."""
-    outcomes = [(result.case.name, outcome) for result in results for outcome in result.outcomes]
+def suite_figures(rows: list[tuple[str, Outcome]], history: list[dict], out: Path) -> dict[str, Path]:
+    """The overview (also as PNG, for the summary) of (name, outcome), and the trend where there is an earlier report."""
     found = {"overview": out / "overview.svg"}
-    charts.overview(outcomes, found["overview"])
-    charts.overview(outcomes, out / "overview.png")
+    charts.overview(rows, found["overview"])
+    charts.overview(rows, out / "overview.png")
     if len(history) > 1:
         found["trend"] = out / "trend.svg"
         charts.trend(history, list(history[-1]["errors"]), found["trend"])

@@ -229,10 +229,10 @@ def _at_zero(finest: Outcome) -> Outcome:
     """The value extrapolated over the levels as an outcome of its own, with its own goal."""
     found = extrapolated(list(finest.spacings), [level.value for level in finest.levels])
     objection = "; ".join(dict.fromkeys(filter(None, (level.objection for level in finest.levels))))
-    observable = replace(finest.observable, symbol=f"{finest.observable.symbol}, dx to 0 ({found.how})",
+    observable = replace(finest.observable, symbol=f"{finest.observable.symbol}, dx to 0",
                          goal=finest.observable.extrapolated, order=None, extrapolated=None)
     sources = {name: value for name, value in finest.sources.items() if name != "resolution"}
-    return Outcome(observable, Measured(found.value, 0.0, objection), sources | {"extrapolation": found.uncertainty})
+    return Outcome(observable, Measured(found.value, 0.0, objection), sources | {f"extrapolation ({found.how})": found.uncertainty})
 
 
 def beside(case: Case, runs: dict[tuple[str, ...], Run]) -> list[tuple[str, Outcome]]:

@@ -11,7 +11,7 @@ from datetime import timedelta
 from pathlib import Path
 
 from verification.case import Case
-from verification.chapters import chapters_of, families_of
+from verification.chapters import chapters_of, families_of, rows_of
 from verification.figures import CaseFigures, case_figures, family_figures, shown_figures, suite_figures
 from verification.history import changes, errors_of, read_history
 from verification.judge import CORRECT, SKIPPED
@@ -23,11 +23,11 @@ from verification.references import run_all_live
 from verification.result import CaseResult, judged, run_bits
 from verification.runner import Job, cores, jobs_of, run_jobs
 from verification.solver import ROOT, Options, Run
+from verification.stored import FULL, PUBLISHED
 
 SHOWN = "gas_solid_small"
 STEPS = {"quick": 8_000, "full": 60_000}  # of the long run
-PUBLISHED = ROOT / "reports" / "published"
-STORED = {"mutation": "mutation.json", "robustness": "robustness.json"}  # made by commands of their own, kept in PUBLISHED
+STORED = {"full": FULL.name, "mutation": "mutation.json", "robustness": "robustness.json"}  # made by commands of their own
 
 
 def _cases(tier: str) -> list[Case]:
@@ -125,12 +125,14 @@ def write_report(tier: str, out: Path, publish: bool) -> int:
             figures[result.case.name] = case_figures(result, out)
         families = [replace(family, charts=family_figures(list(family.results), out)) for family in families_of(results)]
         chapters = chapters_of(results, figures, families)
-        suite = suite_figures(results, [*history, entry], out)
+        rows = rows_of(families)
+        suite = suite_figures([(row.name, row.outcome) for row in rows], [*history, entry], out)
         shown_pictures = shown_figures(shown, out)
     with progress.stage("page"):
         origin |= {chapter.code: chapter.version for chapter in chapters}
         content = {
-            "tier": tier, "results": results, "figures": figures, "families": families, "chapters": chapters, "suite": suite, "shown_pictures": shown_pictures,
+            "tier": tier, "results": results, "figures": figures, "families": families, "chapters": chapters,
+            "rows": rows, "suite": suite, "shown_pictures": shown_pictures,
             "shown": SHOWN, "steps": STEPS[tier], "record": shown.record, "ledger": _ledger(shown), "stored": _stored(),
             "changes": changes(history, entry["errors"]), "history": history, "provenance": origin,
             "checksums": reference_checksums(), "took": str(timedelta(seconds=round(time.monotonic() - started))),

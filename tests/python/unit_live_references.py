@@ -1,8 +1,12 @@
 """Points of a case, references that are computed or looked up, values extrapolated. Oracles: manifests and results written here."""
 
+import json
 import math
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from types import SimpleNamespace
 
 import pytest
@@ -15,8 +19,9 @@ from verification.judge import CORRECT, OPEN, SKIPPED, WRONG, Outcome, _at_zero,
 from verification.ladder import extrapolated
 from verification.manifest import find_cases, read_cases
 from verification.observables import Measured
-from verification.references import live_command, resolved
+from verification.references import LiveRun, live_command, resolved
 from verification.runner import Job, jobs_of
+from verification.stored import store
 
 MANIFEST = """
 name = "x"
@@ -186,7 +191,7 @@ def test_the_extrapolated_value_has_its_own_goal() -> None:
     finest = Outcome(given, levels[-1], {"resolution": 0.02, "Mach": 0.2}, tuple(H), levels)
     found = _at_zero(finest)
     assert found.measured.value == pytest.approx(50.3) and found.observable.goal == 0.01
-    assert set(found.sources) == {"Mach", "extrapolation"} and found.verdict == CORRECT
+    assert set(found.sources) == {"Mach", "extrapolation (Richardson, order 2.00)"} and found.verdict == CORRECT
     tight = Outcome(replace(given, extrapolated=0.005), levels[-1], finest.sources, tuple(H), levels)
     assert _at_zero(tight).verdict == WRONG
 
@@ -242,3 +247,24 @@ def test_quantities_and_overrides_of_a_scene_are_read_as_the_solver_does() -> No
     assert scene["body"][0]["radius"] == 2.5 and scene["box"]["size"] == ["1 mm", 2]
     assert math.isclose(in_si("10 GPa"), 1e10)
 
+
+
+def test_results_of_single_cases_are_kept_side_by_side(tmp_path: Path) -> None:
+    (thin, dense) = read_cases(written(tmp_path))
+    run = SimpleNamespace(record={"commit": "abc"})
+    file = tmp_path / "full.json"
+    for case, value in ((dense, 24.9), (thin, 30.0), (dense, 24.7)):
+        known = resolved(case, FOUND)
+        outcome = Outcome(known.observables[0], Measured(value, 0.0), {"resolution": 0.1})
+        store(SimpleNamespace(case=known, tier="full", runs={(): run}, live=LiveRun(FOUND, tmp_path), outcomes=(outcome,)), file)
+    kept = json.loads(file.read_text())
+    assert list(kept) == ["family.dense", "family.thin"] and kept["family.thin"]["code"] == "OpenFOAM 1912"
+    (row,) = kept["family.dense"]["rows"]
+    assert row["measured"] == "24.7" and row["error"] == "-0.40 %" and row["verdict"] == CORRECT
+    assert kept["family.thin"]["rows"][0]["reason"] == "beyond the goal 2 %"
+
+
+def test_a_scene_that_was_changed_is_not_kept() -> None:
+    line = [sys.executable, "-m", "verification", "run", "rest", "--set", "run.steps=1", "--store"]
+    done = subprocess.run(line, capture_output=True, text=True)
+    assert done.returncode != 0 and "leave out --set or --store" in done.stderr

@@ -1,0 +1,56 @@
+"""Results of single cases that are kept for the report: reports/published/full.json, an entry a case.
+
+The full tier takes longer than a night; case by case it is run when there is time.
+"""
+
+import json
+from datetime import UTC, datetime
+from pathlib import Path
+
+from verification.judge import COVERAGE, SKIPPED, Outcome
+from verification.result import CaseResult
+from verification.solver import ROOT
+
+PUBLISHED = ROOT / "reports" / "published"
+FULL = PUBLISHED / "full.json"
+
+
+def _row(outcome: Outcome) -> dict[str, str]:
+    """As the report shows it, so that the file can be read by itself."""
+    observable, known = outcome.observable, outcome.verdict != SKIPPED
+    return {
+        "symbol": observable.against,
+        "measured": f"{outcome.measured.value:.6g}",
+        "reference": f"{observable.reference:.6g} +- {observable.uncertainty:.2g}" if known else "",
+        "source": observable.source,
+        "error": outcome.error_text if known else "",
+        "u_num": outcome.in_words(outcome.u_num) if outcome.sources and known else "",
+        "u_ref": outcome.in_words(outcome.u_ref) if known else "",
+        "k_u_val": outcome.in_words(COVERAGE * outcome.uncertainty) if known and not outcome.by_goal_alone else "",
+        "goal": outcome.in_words(observable.goal) if known else "",
+        "order": outcome.order_text if known and len(outcome.levels) > 2 else "",
+        "verdict": outcome.verdict,
+        "convergence": outcome.convergence_verdict,
+        "reason": outcome.reason,
+    }
+
+
+def entry_of(result: CaseResult) -> dict:
+    record = next(iter(result.runs.values())).record if result.runs else {"commit": ""}
+    live = result.live.result if result.live else None
+    return {
+        "date": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
+        "commit": record["commit"],
+        "tier": result.tier,
+        "code": f"{live.code} {live.version}" if live else "",
+        "command": f"python3 -m verification run {result.case.name} --tier {result.tier}",
+        "rows": [_row(outcome) for outcome in result.outcomes],
+    }
+
+
+def store(result: CaseResult, file: Path = FULL) -> None:
+    """Adds the result, in place of an earlier one of the same case."""
+    known = json.loads(file.read_text()) if file.exists() else {}
+    known[result.case.name] = entry_of(result)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps(dict(sorted(known.items())), indent=1) + "\n")
