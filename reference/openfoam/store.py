@@ -39,7 +39,7 @@ class Stored:
     levels: tuple[StoredLevel, ...]  # from coarse to fine
 
     def fits(self, cell: Cell, transient: bool) -> bool:
-        stokes = self.reynolds <= STOKES and cell.reynolds <= STOKES * (1 + SAME_REYNOLDS) + 1e-3
+        stokes = self.reynolds <= STOKES and cell.reynolds <= 1.01 * STOKES  # as scenes write rounded numbers
         return (
             self.dimension == cell.dimension
             and self.transient == transient

@@ -158,6 +158,22 @@ def test_a_cell_of_four_discs_drags_four_times_one(tmp_path: Path) -> None:
     assert np.isfinite(vectors(found.folder / str(max(int(p.name) for p in found.folder.glob("[1-9]*"))) / "U")).all()
 
 
+CUBIC = 3.642448  # F / (6 pi mu R U) of a simple cubic array at a solids fraction of 0.1, by the same solver
+
+
+def test_a_sphere_in_stokes_flow_has_its_drag(tmp_path: Path) -> None:
+    coarse, fine = (drag_problem(cell_of(3, 0.1, 0.1)).run(tmp_path / f"n_{n}", n) for n in (6, 8))
+    assert not coarse.objection and not fine.objection
+    assert 1.5 < (CUBIC - coarse.drag) / (CUBIC - fine.drag) < 2.0  # (8 / 6)^2 = 1.78 for second order
+    assert fine.drag + (fine.drag - coarse.drag) / (16 / 9 - 1) == pytest.approx(CUBIC, rel=2e-3)
+
+
+def test_spheres_cut_from_cubes_drag_alike(tmp_path: Path) -> None:
+    found = bodies_problem(cell_of(3, 0.1, 0.1)).run(tmp_path / "n", 8)
+    assert not found.objection
+    assert found.drag == pytest.approx(CUBIC, rel=0.05)
+
+
 def test_a_program_that_is_missing_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     result = drag(tmp_path, "--levels", "8,16")
