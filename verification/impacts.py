@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from reference.contact.collision import Collision, collision_of
-from reference.contact.motion import IMPACT, Motion, normal_force, read_motion, touch_times
+from reference.contact.motion import IMPACT, REST, Motion, centre, normal_force, read_motion, touch_times
 from reference.contact.scene import ContactScene, contact_scene
 from verification.curve import Chart, Curve
 from verification.observables import Measured
@@ -33,7 +33,7 @@ def accepted(value: float) -> Measured:
 
 
 def measure(name: str) -> Callable[[Run], Measured]:
-    return lambda run: accepted(IMPACT[name](motion_of(run.folder)))
+    return lambda run: accepted((IMPACT | REST)[name](motion_of(run.folder)))
 
 
 def over_exact(name: str, of: Callable[[Collision], float]) -> Callable[[Run], Measured]:
@@ -51,6 +51,14 @@ def force_charts(run: Run, folder: Path) -> list[Chart]:
         near = (time > -0.1 * (last - first)) & (time < 1.1 * (last - first))
         curves.append(Curve(label, time[near], normal_force(motion)[near], reference=label == "LIGGGHTS"))
     return [Chart("Force of the contact", "time (s)", "force (N)", tuple(curves))]
+
+
+def centre_chart(run: Run, folder: Path) -> Chart:
+    """Height of the common centre of mass over time, both codes."""
+    live = read_motion(folder / LIVE_TABLE, contact_scene(run.scene))
+    curves = [Curve(label, motion.time, centre(motion), reference=label == "LIGGGHTS")
+              for label, motion in (("LIGGGHTS", live), ("measured", motion_of(run.folder)))]
+    return Chart("Centre of mass", "time", "height", tuple(curves))
 
 
 Values = dict[str, float]  # measures of one point by their names

@@ -160,3 +160,43 @@ IMPACT: dict[str, Callable[[Motion], float]] = {
     for quantity in (contact_force, contact_time, restitution, normal_velocity, tangential_velocity, spin,
                      tangential_restitution, rebound_angle)
 }
+
+
+def _upward(motion: Motion) -> np.ndarray:
+    return -motion.scene.gravity / np.linalg.norm(motion.scene.gravity)
+
+
+def centre(motion: Motion) -> np.ndarray:
+    """Height of the common centre of mass, (n,)."""
+    mass = np.array([body.mass for body in motion.scene.bodies])
+    return (motion.position @ _upward(motion)) @ mass / mass.sum()
+
+
+def height(motion: Motion) -> float:
+    """Of the topmost centre at the end."""
+    return float(np.max(motion.position[-1] @ _upward(motion)))
+
+
+def middle(motion: Motion) -> float:
+    """Height of the common centre of mass at the end."""
+    return float(centre(motion)[-1])
+
+
+def fall_time(motion: Motion) -> float:
+    """When the common centre of mass has first fallen half its way."""
+    fallen = centre(motion)[0] - centre(motion)
+    half = 0.5 * fallen[-1]
+    after = int(np.argmax(fallen >= half))
+    return float(np.interp(half, fallen[after - 1 : after + 1], motion.time[after - 1 : after + 1]))
+
+
+def lowest_overlap(motion: Motion) -> float:
+    """Deepest with a wall at the end."""
+    depths = [body.radius - face.sign * (motion.position[-1, n, face.axis] - face.place)
+              for n, body in enumerate(motion.scene.bodies) for face in motion.scene.faces]
+    return float(max(depths))
+
+
+REST: dict[str, Callable[[Motion], float]] = {
+    quantity.__name__: quantity for quantity in (height, middle, fall_time, lowest_overlap)
+}

@@ -15,7 +15,7 @@ from reference.scene import read_scene
 def parser() -> argparse.ArgumentParser:
     top = argparse.ArgumentParser(prog="python3 -m reference.liggghts", description=__doc__.partition(":")[0])
     problems = top.add_subparsers(dest="problem", required=True)
-    for name, module in (("fall", fall), ("impact", impact)):
+    for name, module in (("fall", fall), ("impact", impact), ("rest", impact)):
         problem = problems.add_parser(name, help=module.__doc__.partition("\n")[0])
         problem.add_argument("--scene", type=Path, required=name != "fall", help="case.toml of the solver")
         problem.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a key of the scene")
@@ -42,13 +42,13 @@ def solve(options: argparse.Namespace, command: str) -> Result:
     """Throws ValueError on bad input, installed or not, and Failed where LIGGGHTS fails."""
     scene = scene_of(options)
     if options.problem == "fall":
-        solver, made = fall, fall.fall_of(options, scene)
-    else:
-        try:
-            solver, made = impact, impact.read_scene_of(scene)
-        except ValueError as error:
-            raise ValueError(f"{options.scene}: {error}") from None
-    return solver.run(made, options.out, command) if installed() else missing(command)
+        fallen = fall.fall_of(options, scene)
+        return fall.run(fallen, options.out, command) if installed() else missing(command)
+    try:
+        bodies = impact.read_scene_of(scene, options.problem)
+    except ValueError as error:
+        raise ValueError(f"{options.scene}: {error}") from None
+    return impact.run(bodies, options.out, command, options.problem) if installed() else missing(command)
 
 
 def main(arguments: list[str]) -> int:
