@@ -1,0 +1,96 @@
+"""Measures of released bodies. Oracles: the equation of motion, Galilean invariance, limits of history."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from synthetic import Fields, synthetic_run
+
+from cases.falling_disc import measure
+from cases.falling_disc.measure import Law, Release
+from cases.falling_sphere.measure import added_mass, with_history
+from verification.solver import Run
+
+SCENE = """
+[box]
+size = [{side}]
+[fluid]
+density = 1.0
+viscosity = 10.0
+[[body]]
+radius = 1.0
+density = {density}
+motion = "{motion}"
+[force]
+fluid = [8.0]
+[run]
+relax = {relax}
+"""
+SPHERE = Release(3, 4.03, 0.064, 1.0, 1.0, 10.0, 2.0, 8.09)
+
+
+def run_of(folder: Path, *, motion: str = "free", drift: float = 0.0, relax: int = 0) -> Run:
+    """A disc at its terminal slip 1.1 for the whole run; the fluid moves with the velocity 1.1 cos in halves, plus a drift."""
+    scene = SCENE.format(side="5.6, 5.6", density=100.0, motion=motion, relax=relax)
+    release = measure.release_of(synthetic_run(folder / "bare", Fields(scene)))
+    mean, excess = 1.1, 0.3  # <u^2> = (1 + excess) <u>^2, seen from the body
+    steps = np.arange(0.0, 101.0)
+    energy = 0.5 * release.fluid_mass * ((1 + excess) * mean**2 + 2 * mean * drift + drift**2)
+    series = {"step": steps, "time": 0.01 * steps, "slip_x": np.full(101, -mean), "solid_velocity_x": np.full(101, drift),
+              "fluid_velocity_x": np.full(101, mean + drift), "fluid_energy": np.full(101, energy)}
+    return synthetic_run(folder / "run", Fields(scene, series))
+
+
+def test_the_law_meets_the_equation_of_motion() -> None:
+    law, time = Law(400.0, 10.0), np.linspace(0, 0.3, 301)
+    slip = law.slip(SPHERE, time)
+    change = np.gradient(slip, time, edge_order=2)
+    assert (SPHERE.reduced_mass + 10.0) * change + 400.0 * slip == pytest.approx(SPHERE.force, rel=2e-4)
+
+
+@pytest.mark.parametrize("drift", [0.0, -0.4])
+def test_the_law_measured_is_the_same_for_a_body_that_drifts(tmp_path: Path, drift: float) -> None:
+    run = run_of(tmp_path, drift=drift)
+    release, law = measure.release_of(run), measure.measured_law(run)
+    assert law.drag == pytest.approx(release.force / 1.1)
+    assert law.virtual_mass == pytest.approx(0.3 * release.fluid_mass)
+
+
+def test_time_counts_from_the_release(tmp_path: Path) -> None:
+    time, slip = measure.slip(run_of(tmp_path, relax=20))
+    assert (time[0], len(slip)) == (pytest.approx(0.0), 81)
+    assert time[-1] == pytest.approx(0.8)
+
+
+def test_liggghts_is_given_the_law_of_the_body_held_fixed(tmp_path: Path) -> None:
+    free, held = run_of(tmp_path / "free", drift=-0.4), run_of(tmp_path / "held", motion="fixed")
+    options = measure.live_options({("a",): free, ("b",): held})
+    found = {options[i]: float(options[i + 1]) for i in (0, 2, 4)}
+    release, law = measure.release_of(held), measure.measured_law(held)
+    assert found == pytest.approx({"--gamma": law.drag, "--force": release.force,
+                                   "--mass": release.reduced_mass + law.virtual_mass})  # fmt: skip
+
+
+def test_masses_of_the_two_body_problem() -> None:
+    solid = SPHERE.ratio * SPHERE.displaced
+    assert SPHERE.displaced == pytest.approx(4 / 3 * np.pi, rel=1e-3)
+    assert SPHERE.fluid_mass + SPHERE.displaced == pytest.approx(4.03**3)
+    assert 1 / SPHERE.reduced_mass == pytest.approx(1 / solid + 1 / SPHERE.fluid_mass)
+
+
+def test_the_law_of_stokes_flow_is_the_late_part_of_the_unsteady_flow() -> None:
+    heavy = Release(2, 5.604991216, 0.1, 1.0, 1.0, 10.0, 100.0, 7.904167)
+    times = (0.6, 0.9, 1.4)
+    assert measure.stokes_flow(heavy, times) == pytest.approx(measure.stokes_law(heavy).slip(heavy, np.array(times)), rel=0.01)
+
+
+def test_history_begins_with_added_mass_and_ends_in_the_drag_law() -> None:
+    law = Law(467.0, 10.0)
+    early, late = with_history(SPHERE, law, np.array([1e-6, 5.0]))
+    assert early == pytest.approx(SPHERE.force * 1e-6 / (SPHERE.reduced_mass + added_mass(SPHERE)), rel=0.05)
+    assert late == pytest.approx(SPHERE.force / law.drag, rel=1e-4)
+
+
+def test_in_a_wide_fluid_the_added_mass_is_half_of_the_fluid_displaced() -> None:
+    wide = Release(3, 100.0, 4.18879e-6, 1.0, 1.0, 10.0, 2.0, 8.09)
+    assert added_mass(wide) == pytest.approx(0.5 * wide.displaced, rel=1e-4)
