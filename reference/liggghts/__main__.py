@@ -6,7 +6,7 @@ import sys
 import tomllib
 from pathlib import Path
 
-from reference.liggghts import fall, impact
+from reference.liggghts import fall, impact, sph
 from reference.liggghts.program import Failed, installed, missing
 from reference.live import Result, write_result
 from reference.scene import read_scene
@@ -15,9 +15,9 @@ from reference.scene import read_scene
 def parser() -> argparse.ArgumentParser:
     top = argparse.ArgumentParser(prog="python3 -m reference.liggghts", description=__doc__.partition(":")[0])
     problems = top.add_subparsers(dest="problem", required=True)
-    for name, module in (("fall", fall), ("impact", impact), ("rest", impact)):
+    for name, module in (("fall", fall), ("impact", impact), ("rest", impact), ("sph", sph)):
         problem = problems.add_parser(name, help=module.__doc__.partition("\n")[0])
-        problem.add_argument("--scene", type=Path, required=name != "fall", help="case.toml of the solver")
+        problem.add_argument("--scene", type=Path, required=module is impact, help="case.toml of the solver")
         problem.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="override a key of the scene")
         problem.add_argument("--out", type=Path, required=True, help="folder of result.json")
         module.add_options(problem)
@@ -44,6 +44,9 @@ def solve(options: argparse.Namespace, command: str) -> Result:
     if options.problem == "fall":
         fallen = fall.fall_of(options, scene)
         return fall.run(fallen, options.out, command) if installed() else missing(command)
+    if options.problem == "sph":
+        fluid = sph.fluid_of(options)
+        return sph.run(fluid, options.out, command) if installed() else missing(command)
     try:
         bodies = impact.read_scene_of(scene, options.problem)
     except ValueError as error:
