@@ -27,11 +27,18 @@ class LiveRun:
     folder: Path
 
 
+def _from_root(path: Path) -> str:
+    """As a command called in the root of the repository may name it."""
+    whole = path.resolve()
+    return str(whole.relative_to(ROOT) if whole.is_relative_to(ROOT) else whole)
+
+
 def live_command(case: Case, tier: str, runs: dict[tuple[str, ...], Run], folder: Path) -> list[str]:
     """For the finest level of the tier; measure.py of the case may add options that depend on the runs."""
     options = own(case, "live_options")
     measured = options(runs) if options else []
-    line = ["python3", "-m", f"reference.{case.live.code}", case.live.problem, "--scene", str(case.file), "--out", str(folder)]
+    line = ["python3", "-m", f"reference.{case.live.code}", case.live.problem]
+    line += ["--scene", _from_root(case.file), "--out", _from_root(folder)]
     for override in case.levels_of(tier)[-1].overrides:
         line += ["--set", override]
     return [*line, *case.live.options(tier), *measured]

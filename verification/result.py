@@ -60,6 +60,9 @@ class CaseResult:
     @property
     def lines(self) -> list[str]:
         lines = [outcome.line for outcome in self.outcomes]
+        if self.live and not self.outcomes:
+            lines += [f"{name} = {quantity.value:.6g}, {quantity.note} ({self.live.result.code}, shown, not judged)"
+                      for name, quantity in self.live.result.quantities.items()]
         lines += [f"{label}: {outcome.line}" for label, outcome in self.beside]
         if self.matrix is not None:
             lines += self.matrix.lines

@@ -127,7 +127,7 @@ def test_the_reference_code_gets_the_scene_of_the_finest_level_and_the_options_o
     _, dense = read_cases(written(tmp_path))
     line = live_command(dense, "full", {}, tmp_path / "out")
     assert line[:4] == ["python3", "-m", "reference.openfoam", "drag"]
-    assert line[4:] == ["--scene", str(dense.file), "--out", str(tmp_path / "out"), "--set", "box.size=[2.0, 2.0]",
+    assert line[4:] == ["--scene", str(dense.file.resolve()), "--out", str((tmp_path / "out").resolve()), "--set", "box.size=[2.0, 2.0]",
                         "--set", "body.0.radius=0.5", "--levels", "8,16"]
 
 
