@@ -11,6 +11,8 @@ from reference.liggghts.__main__ import main
 from reference.liggghts.program import MISSING, installed
 from reference.live import Result, read_result
 
+ROOT = Path(__file__).parents[2]
+
 pytestmark = pytest.mark.skipif(not installed(), reason=MISSING)
 
 
@@ -46,3 +48,36 @@ def test_the_result_names_version_command_and_inputs(tmp_path: Path) -> None:
     assert result["version"].startswith("LIGGGHTS-PUBLIC 3.")
     assert "--gamma 1" in result["command"] and len(result["inputs"]) == 64
     assert "relaxation_time" not in result["quantities"]  # the fall ends before
+
+
+def scene_of(name: str) -> str:
+    return str(ROOT / "cases" / name / "case.toml")
+
+
+@pytest.mark.parametrize("restitution", [0.5, 0.9])
+def test_restitution_given_is_measured(tmp_path: Path, restitution: float) -> None:
+    result = run(tmp_path, "impact", "--scene", scene_of("impact_normal"), "--set", f"contact.restitution={restitution}",
+                 "--set", "run.step=2e-9", "--set", "output.sample=5")
+    assert result.quantities["restitution"].value == pytest.approx(restitution, rel=1e-3)
+
+
+def test_a_sliding_impact_obeys_coulomb(tmp_path: Path) -> None:
+    """At 85 degrees the sphere slides throughout: v_t falls by mu (1 + e) v_n, and omega rises by 5/2 of that over R."""
+    angle = math.radians(85)
+    across, down = 3.9 * math.sin(angle), 3.9 * math.cos(angle)
+    result = run(tmp_path, "impact", "--scene", scene_of("impact_oblique"), "--set", f"body.1.velocity=[{across}, 0.0, {-down}]")
+    lost = 0.092 * 1.98 * down
+    assert result.quantities["tangential_velocity"].value == pytest.approx(across - lost, rel=1e-3)
+    assert result.quantities["spin"].value == pytest.approx(2.5 * lost / 0.0025, rel=0.01)
+
+
+def test_a_stack_rests_on_its_weight(tmp_path: Path) -> None:
+    """k d = 5 m g at the wall."""
+    result = run(tmp_path, "rest", "--scene", scene_of("resting_stack"))
+    assert result.quantities["lowest_overlap"].value == pytest.approx(5 * 4 / 3 * math.pi / 5000, rel=1e-6)
+
+
+def test_its_sph_does_not_repeat_itself(tmp_path: Path) -> None:
+    result = run(tmp_path, "sph", "--side", "24", "--steps", "20")
+    assert result.quantities["ranks_velocity"].value > 0 and result.quantities["skin_velocity"].value > 0
+    assert result.objection

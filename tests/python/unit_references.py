@@ -9,7 +9,8 @@ from verification.manifest import all_cases, find_case
 
 
 def reference(case: str, name: str) -> float:
-    (found,) = [observable.reference for observable in find_case(case).observables if observable.name == name]
+    (found,) = [observable.reference for observable in find_case(case).observables
+                if observable.name == name and not observable.live]
     return found
 
 
