@@ -1,7 +1,7 @@
 """A body released in a periodic cell: its slip against a drag law, LIGGGHTS, and unsteady Stokes flow.
 
-The slip w is the mean velocity of the fluid seen from the body, along the force. With the forces F and -F on fluid and body,
-(m_s m_f / (m_s + m_f)) dw/dt = F - f.
+The slip w is the mean velocity of the fluid seen from the body, along the force. With the forces F and -F on fluid and
+body, (m_s m_f / (m_s + m_f)) dw/dt = F - f.
 """
 
 from dataclasses import dataclass
@@ -119,7 +119,8 @@ def terminal_velocity(run: Run) -> Measured:
 
 def relaxation_time(run: Run) -> Measured:
     time, w = slip(run)
-    return Measured(float(np.interp(-np.expm1(-1.0) * terminal_velocity(run).value, w, time)), float(time[1] - time[0]) / 2)
+    reached = -np.expm1(-1.0) * terminal_velocity(run).value
+    return Measured(float(np.interp(reached, w, time)), float(time[1] - time[0]) / 2)
 
 
 def _times(run: Run) -> np.ndarray:
@@ -167,7 +168,8 @@ def laws(run: Run) -> tuple[Curve, ...]:
 
 def curves(run: Run) -> list[Chart]:
     times = _times(run)
-    exact = Curve("unsteady Stokes flow: added mass and history", times, stokes_flow(release_of(run), tuple(times)), reference=True)
+    found = stokes_flow(release_of(run), tuple(times))
+    exact = Curve("unsteady Stokes flow: added mass and history", times, found, reference=True)
     return [Chart("Slip after release", "time", "w", (*laws(run), exact, Curve("MaPPM", *slip(run))))]
 
 

@@ -14,34 +14,29 @@ from cases.falling_disc.measure import (
     slip,
     terminal_velocity,
 )
+from reference.stokes.history import History
 from reference.stokes.laplace import invert
 from verification.curve import Chart, Curve
 from verification.observables import Measured
 from verification.solver import Run
 
-__all__ = ["curves", "from_drag_law", "from_history", "live_curves", "live_options", "relaxation_time", "terminal_velocity"]
+__all__ = ["curves", "from_drag_law", "from_history", "live_curves", "live_options", "relaxation_time",
+           "terminal_velocity"]  # fmt: skip
 
 
 def added_mass(release: Release) -> float:
-    """In potential flow: half the fluid displaced, more in an array (Zuber, Chem. Eng. Sci. 19, 1964, 897-917)."""
-    return 0.5 * release.displaced * (1 + 2 * release.fraction) / (1 - release.fraction)
+    """In potential flow past the array, for w. By the analogy with conduction past spheres that do not conduct (Maxwell
+    1873: (1 - phi) / (1 + phi / 2)) the flow U takes a body force rho dU/dt (1 + phi / 2) / (1 - phi); the sphere feels
+    what is left of it in the fluid, phi / 2 rho dU/dt, and U = (1 - phi) w."""
+    return 0.5 * release.displaced * (1 - release.fraction)
 
 
 def with_history(release: Release, law: Law, time: np.ndarray) -> np.ndarray:
-    """Slip under the drag f(s) / w(s) = G + m_a s + 6 pi mu R (sqrt(T (s + a)) - sqrt(T a)), T = R^2 / nu.
-
-    At large s that is added mass and Basset's history (Landau and Lifshitz, Fluid Mechanics, section 24); in a cell momentum
-    has only so far to diffuse, so it is forgotten at a rate a, which the momentum at small s determines: f' = m_v.
-    """
-    stokes, memory = 6 * np.pi * release.viscosity * release.radius, release.radius**2 * release.density / release.viscosity
-    mass = added_mass(release)
-    rate = memory * (stokes / (2 * (law.virtual_mass - mass))) ** 2
-
-    def transformed(s: complex) -> complex:
-        history = stokes * (np.sqrt(memory * (s + rate)) - np.sqrt(memory * rate))
-        return release.force / (s * (release.reduced_mass * s + law.drag + mass * s + history))
-
-    return invert(transformed, time)
+    """Slip with added mass and history. In a fluid that slips past with 3/2 w sin(theta) the boundary layer takes
+    6 pi R^2 sqrt(rho mu s)."""
+    layer = 6 * np.pi * release.radius**2 * np.sqrt(release.density * release.viscosity)
+    history = History(law.drag, added_mass(release), layer, law.virtual_mass)
+    return invert(lambda s: release.force / (s * (release.reduced_mass * s + history.impedance(s))), time)
 
 
 def _largest(run: Run, expected: np.ndarray) -> Measured:

@@ -5,8 +5,7 @@ from cases.falling_sphere.measure import (
     from_history,
     live_curves,
     live_options,
-    relaxation_time,
     terminal_velocity,
 )
 
-__all__ = ["curves", "from_history", "live_curves", "live_options", "relaxation_time", "terminal_velocity"]
+__all__ = ["curves", "from_history", "live_curves", "live_options", "terminal_velocity"]

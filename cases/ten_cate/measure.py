@@ -32,5 +32,6 @@ def curves(run: Run) -> list[Chart]:
     time, velocity, gap = _fall(run)
     measured = look_up("ten_cate_u_max", run.scene).value
     level = Curve("largest velocity measured", time, np.full_like(time, measured), reference=True)
+    over_gap = Curve("MaPPM", gap / DIAMETER, velocity)
     return [Chart("Fall of the sphere", "time (s)", "velocity (m/s)", (level, Curve("MaPPM", time, velocity))),
-            Chart("Over the gap below the sphere", "gap / diameter", "velocity (m/s)", (Curve("MaPPM", gap / DIAMETER, velocity),))]
+            Chart("Over the gap below the sphere", "gap / diameter", "velocity (m/s)", (over_gap,))]

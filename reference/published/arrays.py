@@ -18,7 +18,7 @@ def _row(table: Table, fraction: float) -> Published | None:
 
 
 def square_stokes(fraction: float) -> Published:
-    """F / (mu U) of a square array of cylinders: the table of Sangani and Acrivos, and between its rows its like, computed.
+    """F / (mu U) of a square array of cylinders: the table of Sangani and Acrivos; between its rows its like, computed.
 
     The Stokes flow that fills the gaps meets all rows of the table but the one at 0.3, which is 0.02 % high.
     """
@@ -28,8 +28,8 @@ def square_stokes(fraction: float) -> Published:
     if row:
         return row
     found = square_array(fraction)
-    source = "Stokes flow by eigenfunctions and collocation (reference/stokes/square_array.py), between rows of " + table.source
-    return Published(found.drag, found.drag * max(found.change, 1e-8), source)
+    how = "Stokes flow by eigenfunctions and collocation (reference/stokes/square_array.py), between rows of "
+    return Published(found.drag, found.drag * max(found.change, 1e-8), how + table.source)
 
 
 def cubic_series(fraction: float) -> Published:

@@ -1,4 +1,4 @@
-"""What a table is entered with, worked out from a scene: solids fraction and Reynolds number of the one body of a cell."""
+"""What a table is entered with, worked out from a scene: solids fraction and Reynolds number of one body in a cell."""
 
 import math
 from dataclasses import dataclass

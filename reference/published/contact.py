@@ -13,9 +13,9 @@ def chung_ooi(test: int, figure: str) -> tuple[np.ndarray, np.ndarray]:
     Throws KeyError on another.
     """
     table = read_table("chung_ooi_2011")
-    points = [(float(row["x"]), float(row["y"])) for row in table.rows if (row["test"], row["figure"]) == (str(test), figure)]
-    if not points:
+    rows = [row for row in table.rows if (row["test"], row["figure"]) == (str(test), figure)]
+    if not rows:
         known = sorted({f"{row['test']} {row['figure']}" for row in table.rows})
         raise KeyError(f"test {test}, figure {figure}: not in the table; there are {', '.join(known)}")
-    x, y = np.array(points).T
+    x, y = (np.array([float(row[key]) for row in rows]) for key in ("x", "y"))
     return x, y

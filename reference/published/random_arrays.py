@@ -1,4 +1,4 @@
-"""Drag of spheres in random arrays, F / (6 pi mu R U) with F the mean pressure gradient times the volume of one sphere's cell."""
+"""Drag of spheres in random arrays, F / (6 pi mu R U): F the mean pressure gradient times the volume of a sphere."""
 
 import math
 
@@ -6,14 +6,14 @@ from reference.published.cell import refuse_outside
 from reference.published.value import Published
 from reference.scene import in_si
 
-SOURCE = ("Hill, Koch and Ladd, J. Fluid Mech. 448, 2001, 243-278, as put by Koch and Hill, Annu. Rev. Fluid Mech. 33, 2001, "
-          "619-647: F_0 + F_3 Re_R")
+SOURCE = ("Hill, Koch and Ladd, J. Fluid Mech. 448, 2001, 243-278, as put by Koch and Hill, Annu. Rev. Fluid Mech. 33, "
+          "2001, 619-647: F_0 + F_3 Re_R")
 
 
 def koch_hill(fraction: float, reynolds: float) -> Published:
-    """`reynolds` on the diameter and the superficial velocity; the law counts from 20 or so to 120, and by F_0 alone at 0.
+    """`reynolds` on the diameter and the superficial velocity.
 
-    Uncertainty 10 %: what their runs scatter. Below Re of about 20 inertia goes as Re^2, with a smaller share.
+    Uncertainty 10 %: what their runs scatter. At small Re inertia goes as Re^2, and the law is high.
     """
     refuse_outside("solids fraction", fraction, 0.01, 0.6, SOURCE)
     refuse_outside("Re", reynolds, 0.0, 120.0, SOURCE)

@@ -32,5 +32,5 @@ def largest_velocity(scene: dict) -> Published:
             value = float(row["ratio"]) * velocity_in_wide_fluid(cell.density, cell.viscosity)
             return Published(value, ACCURACY * value, f"{row['name']} of {table.source}")
     known = ", ".join(f"{row['density']} and {row['viscosity']}" for row in table.rows)
-    raise ValueError(f"fluid.density and viscosity = {cell.density:g} and {cell.viscosity:g}: no experiment of ten Cate et al.; "
-                     f"there are {known}")
+    raise ValueError(f"fluid.density and viscosity = {cell.density:g} and {cell.viscosity:g}: "
+                     f"no experiment of ten Cate et al.; there are {known}")

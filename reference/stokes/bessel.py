@@ -1,7 +1,7 @@
-"""Modified Bessel functions of whole orders and complex argument, by their logarithms: orders of 100 leave no range behind.
+"""Modified Bessel functions of whole orders and complex argument, by their logarithms, which no order of 100 exceeds.
 
-Abramowitz and Stegun, Handbook of Mathematical Functions, 1964, chapter 9: 9.6.24 (K by an integral), 9.6.26 (recurrences),
-9.6.16 (I_0). The ratios of I come from the recurrence downwards, K upwards: the stable ways.
+Abramowitz and Stegun, Handbook of Mathematical Functions, 1964, chapter 9: 9.6.24 (K by an integral), 9.6.26
+(recurrences), 9.6.16 (I_0). The ratios of I come from the recurrence downwards, K upwards: the stable ways.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ def log_first_kind(highest: int, z: np.ndarray) -> np.ndarray:
         if n <= highest:
             ratios.append(np.log(ratio))
     angle = np.pi * (np.arange(400) + 0.5) / 400
-    scaled = np.exp(z[:, None] * (np.cos(angle) - 1)).mean(axis=1)  # I_0 exp(-z): the midpoint rule is exact to rounding
+    scaled = np.exp(z[:, None] * (np.cos(angle) - 1)).mean(axis=1)  # I_0 exp(-z): the midpoint rule is exact here
     return np.cumsum([np.log(scaled) + z, *ratios[::-1]], axis=0)
 
 

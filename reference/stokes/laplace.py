@@ -14,4 +14,5 @@ def invert(transformed: Callable[[complex], complex], time: np.ndarray, nodes: i
     cotangent = 1 / np.tan(angle)
     path = np.concatenate([[1.0 + 0j], angle * (cotangent + 1j)]) * 2 * nodes / 5
     weight = np.concatenate([[0.5], 1 + 1j * angle * (1 + cotangent**2) - 1j * cotangent]) * np.exp(path)
-    return np.array([0.4 / t * float(sum(w * transformed(s / t) for w, s in zip(weight, path, strict=True)).real) for t in time])
+    sums = [sum(w * transformed(s / t) for w, s in zip(weight, path, strict=True)) for t in time]
+    return 0.4 / time * np.real(sums)

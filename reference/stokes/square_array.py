@@ -8,8 +8,8 @@ u = psi_y, v = -psi_x. No slip at r = a leaves two of the four. On the edges of 
 
     psi_x = 0 and w_x = 0 at x = 1/2,   psi = U / 2 and w = 0 at y = 1/2     (w = -Lap psi, the vorticity),
 
-which is met at many points by least squares (the method of Sparrow and Loeffler, AIChE Journal 5, 1959, 325-330). Far from
-a body that holds the fluid back with a force F, psi is F r ln r sin(theta) / (4 pi mu): the drag is read off that term.
+which is met at many points by least squares (the method of Sparrow and Loeffler, AIChE Journal 5, 1959, 325-330). Far
+from a body that holds the fluid back with a force F, psi is F r ln r sin(theta) / (4 pi mu): that term gives the drag.
 """
 
 from dataclasses import dataclass
@@ -19,8 +19,8 @@ import numpy as np
 
 @dataclass(frozen=True)
 class ArrayDrag:
-    """F / (mu U), F the mean pressure gradient times the cell, U the superficial velocity; `change`: relative, from three
-    quarters of the terms to all of them."""
+    """F / (mu U), F the mean pressure gradient times the cell, U the superficial velocity; `change`: relative, from
+    three quarters of the terms to all of them."""
 
     drag: float
     change: float

@@ -1,18 +1,19 @@
 """Unsteady Stokes flow through a square array of discs: its drag at a complex rate s, and a disc released from rest.
 
-All is Laplace transformed. In the frame of the discs, whose acceleration is a part of the body force b, the stream function
-of a flow along x that is symmetric about both axes is
+All is Laplace transformed. In the frame of the discs, whose acceleration is a part of the body force b, the stream
+function of a flow along x that is symmetric about both axes is
 
     psi = sum over odd n of sin(n theta) f_n(r),   f_n of r^n, r^-n, I_n(k r), K_n(k r),   k^2 = s / nu.
 
-No slip and the symmetries of the cell are met as in square_array.py. The part without vorticity has the velocity potential
-phi, pressure -rho s phi, and b is what makes the pressure periodic. The flow takes up rho s U L^2 of the momentum b V_fluid;
-the disc takes the rest, f. With the slip w = U / (1 - fraction), the mean velocity of the fluid seen from the disc,
+No slip and the symmetries of the cell are met as in square_array.py. The part without vorticity has the velocity
+potential phi, pressure -rho s phi, and b is what makes the pressure periodic. The flow takes up rho s U L^2 of the
+momentum b V_fluid; the disc takes the rest, f. With the slip w = U / (1 - fraction), the mean velocity of the fluid
+seen from the disc,
 
     Z(s) = f / (mu w)
 
-is the drag at s = 0, and holds added mass and history at other rates. A disc of mass m_s and the fluid, of mass m_f in a
-cell, driven apart by forces F and -F from rest, obey (m s + Z) w = F / s, m = m_s m_f / (m_s + m_f).
+is the drag at s = 0, and holds added mass and history at other rates. A disc of mass m_s and the fluid, of mass m_f in
+a cell, driven apart by forces F and -F from rest, obey (m s + Z) w = F / s, m = m_s m_f / (m_s + m_f).
 """
 
 import numpy as np
@@ -34,7 +35,8 @@ class _Order:
     def functions(self, at: str) -> np.ndarray:
         """(4, 2, points): r^n, r^-n, I_n, K_n with their slopes; `at`: "edge" or "disc"."""
         r, log_i, log_k = self.bessel[at]
-        n, i_scale, k_scale = self.n, self.bessel["edge"][1][self.n].real.max(), self.bessel["disc"][2][self.n].real.max()
+        n, i_scale = self.n, self.bessel["edge"][1][self.n].real.max()
+        k_scale = self.bessel["disc"][2][n].real.max()
         power, inverse = (r / HALF_DIAGONAL) ** n, (self.radius / r) ** n
         i, i_next = np.exp(log_i[n] - i_scale), np.exp(log_i[n + 1] - i_scale)
         second, second_next = np.exp(log_k[n] - k_scale), np.exp(log_k[n + 1] - k_scale)
@@ -87,7 +89,7 @@ def impedance(fraction: float, s: complex, terms: int = TERMS) -> complex:
     wanted = np.zeros(len(matrix), dtype=complex)
     wanted[2 * len(along) : 3 * len(along)] = 0.5
     strengths = np.linalg.lstsq(matrix / scale, wanted, rcond=1e-15)[0] / scale
-    body_force = 2 * s * np.mean(strengths @ np.array(potentials))  # rho b, for U = 1: phi is the same all along x = 1/2
+    body_force = 2 * s * np.mean(strengths @ np.array(potentials))  # rho b, for U = 1: phi is constant along x = 1/2
     return (1 - fraction) * ((1 - fraction) * body_force - s)
 
 

@@ -9,6 +9,9 @@ from synthetic import Fields, synthetic_run
 from cases.falling_disc import measure
 from cases.falling_disc.measure import Law, Release
 from cases.falling_sphere.measure import added_mass, with_history
+from reference.stokes.history import History
+from reference.stokes.square_array import square_array
+from reference.stokes.unsteady_array import impedance, virtual_mass
 from verification.solver import Run
 
 SCENE = """
@@ -30,14 +33,15 @@ SPHERE = Release(3, 4.03, 0.064, 1.0, 1.0, 10.0, 2.0, 8.09)
 
 
 def run_of(folder: Path, *, motion: str = "free", drift: float = 0.0, relax: int = 0) -> Run:
-    """A disc at its terminal slip 1.1 for the whole run; the fluid moves with the velocity 1.1 cos in halves, plus a drift."""
+    """A disc at its terminal slip 1.1 for the whole run; the fluid has 1.3 times the energy of its mean,
+    seen from the disc."""
     scene = SCENE.format(side="5.6, 5.6", density=100.0, motion=motion, relax=relax)
     release = measure.release_of(synthetic_run(folder / "bare", Fields(scene)))
     mean, excess = 1.1, 0.3  # <u^2> = (1 + excess) <u>^2, seen from the body
     steps = np.arange(0.0, 101.0)
     energy = 0.5 * release.fluid_mass * ((1 + excess) * mean**2 + 2 * mean * drift + drift**2)
-    series = {"step": steps, "time": 0.01 * steps, "slip_x": np.full(101, -mean), "solid_velocity_x": np.full(101, drift),
-              "fluid_velocity_x": np.full(101, mean + drift), "fluid_energy": np.full(101, energy)}
+    held = {"slip_x": -mean, "solid_velocity_x": drift, "fluid_velocity_x": mean + drift, "fluid_energy": energy}
+    series = {"step": steps, "time": 0.01 * steps} | {name: np.full(101, value) for name, value in held.items()}
     return synthetic_run(folder / "run", Fields(scene, series))
 
 
@@ -81,7 +85,8 @@ def test_masses_of_the_two_body_problem() -> None:
 def test_the_law_of_stokes_flow_is_the_late_part_of_the_unsteady_flow() -> None:
     heavy = Release(2, 5.604991216, 0.1, 1.0, 1.0, 10.0, 100.0, 7.904167)
     times = (0.6, 0.9, 1.4)
-    assert measure.stokes_flow(heavy, times) == pytest.approx(measure.stokes_law(heavy).slip(heavy, np.array(times)), rel=0.01)
+    law = measure.stokes_law(heavy).slip(heavy, np.array(times))
+    assert measure.stokes_flow(heavy, times) == pytest.approx(law, rel=0.01)
 
 
 def test_history_begins_with_added_mass_and_ends_in_the_drag_law() -> None:
@@ -94,3 +99,13 @@ def test_history_begins_with_added_mass_and_ends_in_the_drag_law() -> None:
 def test_in_a_wide_fluid_the_added_mass_is_half_of_the_fluid_displaced() -> None:
     wide = Release(3, 100.0, 4.18879e-6, 1.0, 1.0, 10.0, 2.0, 8.09)
     assert added_mass(wide) == pytest.approx(0.5 * wide.displaced, rel=1e-4)
+
+
+@pytest.mark.parametrize("fraction", [0.03, 0.1])
+def test_basset_s_history_with_an_end_meets_the_unsteady_stokes_flow_in_the_plane(fraction: float) -> None:
+    # The same form for discs: the fluid slips past with 2 w sin(theta), so its boundary layer takes 4 pi sqrt(rho mu s)
+    # R, and the added mass is phi (1 - phi). Units of the cell.
+    drag, layer = (1 - fraction) ** 2 * square_array(fraction).drag, 4 * np.pi * np.sqrt(fraction / np.pi)
+    history = History(drag, fraction * (1 - fraction), layer, virtual_mass(fraction))
+    for s in (1.0, 10.0, 100.0, 1000.0, 10000.0):
+        assert history.impedance(s) == pytest.approx(impedance(fraction, s).real, rel=0.02)

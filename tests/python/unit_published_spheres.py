@@ -1,4 +1,4 @@
-"""Published figures of spheres: falling, alone, in random arrays, in contact. Oracles: theory, and a second source for each."""
+"""Published figures of spheres: falling, alone, in random arrays, in contact. Oracles: theory, a second source."""
 
 import math
 
@@ -19,7 +19,8 @@ def sphere_scene(**fluid: float) -> dict:
 
 
 def test_ten_cate_s_numbers_follow_from_each_other() -> None:
-    # Printed digits: u to 1e-3, Re to 0.1, St to 0.01 of numbers that follow from densities, viscosity and Abraham's law.
+    # Printed digits: u to 1e-3, Re to 0.1, St to 0.01 of numbers that follow from densities, viscosity and Abraham's
+    # law.
     for row in read_table("ten_cate_2002").rows:
         density, viscosity = float(row["density"]), float(row["viscosity"])
         velocity = velocity_in_wide_fluid(density, viscosity)
@@ -45,7 +46,8 @@ def test_ten_cate_by_density_and_viscosity() -> None:
 
 
 def test_correlations_for_one_sphere_tend_to_stokes_and_oseen() -> None:
-    # Proudman and Pearson 1957: 1 + 3/16 Re + 9/160 Re^2 ln(Re / 2). Abraham's law is of boundary layers: 11 % high at 0.01.
+    # Proudman and Pearson 1957: 1 + 3/16 Re + 9/160 Re^2 ln(Re / 2). Abraham's law is of boundary layers: 11 % high at
+    # 0.01.
     for re in (0.02, 0.1):
         exact = 1 + 3 / 16 * re + 9 / 160 * re**2 * math.log(re / 2)
         values = spread(re)
@@ -69,10 +71,11 @@ def test_clift_grace_and_weber_s_pieces_meet() -> None:
 
 
 def test_random_arrays_against_van_der_hoef() -> None:
-    # Van der Hoef, Beetstra and Kuipers 2005, without the share of the mean pressure: 10 phi / (1 - phi)^2 + (1 - phi)^2
-    # (1 + 1.5 sqrt(phi)).
+    # Van der Hoef, Beetstra and Kuipers 2005, without the share of the mean pressure: 10 phi / (1 - phi)^2 + (1 -
+    # phi)^2 (1 + 1.5 sqrt(phi)).
     for fraction in (0.1, 0.2, 0.3, 0.4, 0.5):
-        other = (10 * fraction / (1 - fraction) ** 2 + (1 - fraction) ** 2 * (1 + 1.5 * math.sqrt(fraction))) / (1 - fraction)
+        fluid = 1 - fraction
+        other = (10 * fraction / fluid**2 + fluid**2 * (1 + 1.5 * math.sqrt(fraction))) / fluid
         found = koch_hill(fraction, 0.0)
         assert abs(found.value - other) < found.uncertainty
 
@@ -95,7 +98,9 @@ def test_one_sphere_out_of_range_is_refused(re: float, words: str) -> None:
         spread(re)
 
 
-@pytest.mark.parametrize(("test", "young", "radius"), [(1, 48e9 / (2 * (1 - 0.2**2)), 0.005), (2, 70e9 / (1 - 0.3**2), 0.1)])
+@pytest.mark.parametrize(
+    ("test", "young", "radius"), [(1, 48e9 / (2 * (1 - 0.2**2)), 0.005), (2, 70e9 / (1 - 0.3**2), 0.1)]
+)
 def test_chung_and_ooi_s_forces_are_hertz_s(test: int, young: float, radius: float) -> None:
     overlap, force = chung_ooi(test, "force")
     hertz = 4 / 3 * young * math.sqrt(radius) * (overlap * 1e-6) ** 1.5 / 1e3

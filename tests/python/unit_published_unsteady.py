@@ -1,4 +1,4 @@
-"""Unsteady Stokes flow through a square array. Oracles: Abramowitz and Stegun, steady flow, potential flow, known transforms."""
+"""Unsteady Stokes flow through a square array. Oracles: tables, steady flow, potential flow, known transforms."""
 
 import numpy as np
 import pytest
@@ -40,9 +40,9 @@ def test_slowly_the_drag_is_that_of_steady_flow(fraction: float) -> None:
 
 
 def test_suddenly_a_disc_carries_the_added_mass_of_potential_flow() -> None:
-    # (Z / s - m_a) falls as s^(-1/2), the boundary layer; m_a of a dilute square array, Rayleigh 1892 by the analogy with
-    # conduction: mean flow past discs without conduction, (1 - phi) / (1 + phi), so m_a = phi (1 - phi) to order phi^3
-    # for the mean velocity of the fluid.
+    # (Z / s - m_a) falls as s^(-1/2), the boundary layer; m_a of a dilute square array, Rayleigh 1892 by the analogy
+    # with conduction: mean flow past discs without conduction, (1 - phi) / (1 + phi), so m_a = phi (1 - phi) to order
+    # phi^3 for the mean velocity of the fluid.
     for fraction in (0.02, 0.1):
         coarse, fine = (impedance(fraction, s).real / s for s in (4e4, 1.6e5))
         assert 2 * fine - coarse == pytest.approx(fraction * (1 - fraction), rel=0.005)
