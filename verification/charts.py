@@ -121,7 +121,7 @@ def uncertainty_split(result: CaseResult, file: Path) -> None:
         axes.set_yticks(np.arange(len(sources)) + 0.5 * (len(shown) - 1) * height, sources, fontsize=8)
         axes.set_xlabel("standard uncertainty, % of the goal")
         if len(shown) > 1:
-            axes.legend(frameon=False, fontsize=7)
+            axes.figure.legend(frameon=False, fontsize=7, loc="outside lower center")
 
 
 def draw(chart: Chart, file: Path) -> None:
@@ -129,7 +129,7 @@ def draw(chart: Chart, file: Path) -> None:
         for curve in chart.curves:
             style = {"color": DARK if curve.reference else None, "label": curve.label}
             if curve.points:
-                style |= {"fmt": "o", "markersize": 4, "mfc": "none", "capsize": 2, "linewidth": 1}
+                style |= {"fmt": curve.marker, "markersize": 4, "mfc": "none", "capsize": 2, "linewidth": 1}
                 axes.errorbar(curve.x, curve.y, yerr=curve.error, **style)
             else:
                 axes.plot(curve.x, curve.y, linestyle="--" if curve.reference else "-", linewidth=1.3, **style)

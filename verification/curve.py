@@ -15,6 +15,7 @@ class Curve:
     reference: bool = False
     points: bool = False
     error: np.ndarray | None = None  # of y, drawn as bars
+    marker: str = "o"  # of points, as matplotlib names them
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from verification.errors import CaseError, SolverError
-from verification.errors import CaseError
 from verification.series import Table, first_difference
 from verification.solver import ROOT, Options, program, run
 

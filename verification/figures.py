@@ -63,7 +63,7 @@ def case_figures(result: CaseResult, out: Path) -> CaseFigures:
 
 def family_figures(results: list[CaseResult], out: Path) -> tuple[Path, ...]:
     """What measure.py draws of all points together: `def family_curves(results: list[CaseResult]) -> list[Chart]`."""
-    curves = own(results[0].case, "family_curves")
+    curves = own(results[0].case, "family_curves") if len(results) > 1 else None
     return tuple(_drawn(curves(results) if curves else [], f"{results[0].case.family}_family", out))
 
 

@@ -73,7 +73,7 @@ def _values(result: CaseResult) -> tuple[Values, Values]:
 
 def family_chart(results: list[CaseResult], labels: tuple[str, str, str], x: Callable[[ContactScene], float],
                  y: Callable[[Values, ContactScene], float], group: Callable[[str], str], published: tuple[Curve, ...] = ()) -> Chart:
-    """y over x of all points, a line for each `group` of their names, "" for none: the solver's as lines, LIGGGHTS' as circles.
+    """y over x of all points, a colour for each `group` of their names, "" for none: the solver's as crosses, LIGGGHTS' as circles.
 
     `labels` are the title and those of the axes.
     """
@@ -87,7 +87,7 @@ def family_chart(results: list[CaseResult], labels: tuple[str, str, str], x: Cal
     curves = []
     for label, points in groups.items():
         at, values, live = np.array(sorted(points)).T
-        curves.append(Curve(label, at, values))
+        curves.append(Curve(label, at, values, points=True, marker="x"))
         if np.isfinite(live).any():
             curves.append(Curve(f"{label}, LIGGGHTS", at, live, reference=True, points=True))
     return Chart(*labels, (*curves, *published))

@@ -63,7 +63,8 @@ class CaseResult:
         if self.live and not self.outcomes:
             lines += [f"{name} = {quantity.value:.6g}, {quantity.note} ({self.live.result.code}, shown, not judged)"
                       for name, quantity in self.live.result.quantities.items()]
-        lines += [f"{label}: {outcome.line}" for label, outcome in self.beside]
+        lines += [f"beside it, {label}: {outcome.observable.symbol} = {outcome.measured.value:.6g}, {outcome.error_text} from "
+                  f"{outcome.observable.reference:g}, without a verdict" for label, outcome in self.beside]
         if self.matrix is not None:
             lines += self.matrix.lines
         if self.faces is not None:

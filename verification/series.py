@@ -47,7 +47,7 @@ def first_difference(tables: dict[str, Table]) -> tuple[int, dict[str, str]] | N
 
     Tables of different length differ at the first step that one of them lacks.
     """
-    digests = {name: dict(zip(table["step"].astype(int), table["digest"])) for name, table in tables.items()}
+    digests = {name: dict(zip(table["step"].astype(int), table["digest"], strict=True)) for name, table in tables.items()}
     for step in sorted(set().union(*digests.values())):
         at_step = {name: rows.get(step, "no row") for name, rows in digests.items()}
         if len(set(at_step.values())) > 1:

@@ -89,7 +89,7 @@ def relaxation_time(fall: Fall, time: np.ndarray, velocity: np.ndarray) -> float
 
 
 def _quantity(name: str, values: list[float], seconds: list[float]) -> Quantity:
-    levels = tuple(Level(f"{n} steps", STEPS[0] / n, value, spent) for n, value, spent in zip(STEPS, values, seconds))
+    levels = tuple(Level(f"{n} steps", STEPS[0] / n, value, spent) for n, value, spent in zip(STEPS, values, seconds, strict=False))
     return Quantity(values[-1], abs(values[-1] - values[0]), levels,
                     note=f"{name} of the finer step; uncertainty, its difference from the coarser")
 

@@ -86,7 +86,7 @@ def _body_lines(scene: ContactScene) -> str:
         velocity = _in_space(body.velocity + 0.5 * scene.step * scene.gravity)
         turning = body.spin if scene.dimension == 3 else [0.0, 0.0, body.spin[0]]
         for name, values in (("v", velocity), ("omega", turning)):
-            lines.append(f"set atom {n} " + " ".join(f"{name}{axis} {_numbers(value)}" for axis, value in zip("xyz", values)))
+            lines.append(f"set atom {n} " + " ".join(f"{name}{axis} {_numbers(value)}" for axis, value in zip("xyz", values, strict=False)))
     return "\n".join(lines)
 
 

@@ -26,7 +26,7 @@ def cell(size: tuple[float, ...], on_surface: float, velocity: np.ndarray, turn:
         "force": {"fluid": list(2.0 * direction)},
     }
     columns = {"time": TIME}
-    for axis, share, own in zip("xyz", direction, moves or (0.0,) * dimension):
+    for axis, share, own in zip("xyz", direction, moves or (0.0,) * dimension, strict=False):
         columns[f"fluid_velocity_{axis}"] = share * velocity / 0.8 + own
         columns[f"superficial_velocity_{axis}"] = 0.8 * columns[f"fluid_velocity_{axis}"]
         columns[f"slip_{axis}"] = -share * velocity / 0.8
