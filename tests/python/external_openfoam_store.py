@@ -1,0 +1,23 @@
+"""Stored levels of OpenFOAM, computed again. Oracle: the stored value, to the accuracy of the iteration."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from reference.openfoam import store
+from reference.openfoam.cell import cell_of
+from reference.openfoam.level import run_level
+
+pytestmark = pytest.mark.skipif(shutil.which("simpleFoam") is None, reason="simpleFoam is not installed: apt-get install openfoam")
+STEADY = sorted(file for file in store.FOLDER.glob("*.json") if not store.read_stored(file).transient)
+
+
+@pytest.mark.parametrize("file", STEADY, ids=lambda file: file.stem)
+def test_the_coarsest_stored_level_comes_out_again(tmp_path: Path, file: Path) -> None:
+    stored = store.read_stored(file)
+    n = stored.levels[0].n
+    found = run_level(tmp_path / "level", cell_of(stored.dimension, stored.solid, stored.reynolds), n)
+    assert not found.objection
+    assert not store.disagreement(stored, n, found.drag)
+    assert store.disagreement(stored, n, 1.001 * found.drag)
