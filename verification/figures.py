@@ -6,10 +6,12 @@ from pathlib import Path
 from verification import charts
 from verification.curve import Chart
 from verification.judge import SKIPPED, Outcome, own
+from verification.manifest import find_cases
 from verification.pictures import velocity_field
 from verification.result import CaseResult
 from verification.side_by_side import compare_fields
 from verification.solver import Run
+from verification.stored import FULL_CHARTS
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,17 @@ def family_figures(results: list[CaseResult], out: Path) -> tuple[Path, ...]:
     """What measure.py draws of all points together: `def family_curves(results: list[CaseResult]) -> list[Chart]`."""
     curves = own(results[0].case, "family_curves") if len(results) > 1 else None
     return tuple(_drawn(curves(results) if curves else [], f"{results[0].case.family}_family", out))
+
+
+def store_charts(results: list[CaseResult], out: Path = FULL_CHARTS) -> None:
+    """Of the families whose points are all among `results`, kept for the report."""
+    families: dict[str, list[CaseResult]] = {}
+    for result in results:
+        families.setdefault(result.case.family, []).append(result)
+    for members in families.values():
+        if len(members) == len(find_cases(members[0].case.family)):
+            out.mkdir(parents=True, exist_ok=True)
+            family_figures(members, out)
 
 
 def suite_figures(rows: list[tuple[str, Outcome]], history: list[dict], out: Path) -> dict[str, Path]:

@@ -23,7 +23,7 @@ from verification.references import run_all_live
 from verification.result import CaseResult, judged, run_bits
 from verification.runner import Job, cores, jobs_of, run_jobs
 from verification.solver import ROOT, Options, Run
-from verification.stored import FULL, PUBLISHED
+from verification.stored import FULL, FULL_CHARTS, PUBLISHED
 
 SHOWN = "gas_solid_small"
 STEPS = {"quick": 8_000, "full": 60_000}  # of the long run
@@ -134,6 +134,7 @@ def write_report(tier: str, out: Path, publish: bool) -> int:
             "tier": tier, "results": results, "figures": figures, "families": families, "chapters": chapters,
             "rows": rows, "suite": suite, "shown_pictures": shown_pictures,
             "shown": SHOWN, "steps": STEPS[tier], "record": shown.record, "ledger": _ledger(shown), "stored": _stored(),
+            "full_charts": sorted(FULL_CHARTS.glob("*.svg")),
             "changes": changes(history, entry["errors"]), "history": history, "provenance": origin,
             "checksums": reference_checksums(), "took": str(timedelta(seconds=round(time.monotonic() - started))),
         }

@@ -13,6 +13,7 @@ from verification.solver import ROOT
 
 PUBLISHED = ROOT / "reports" / "published"
 FULL = PUBLISHED / "full.json"
+FULL_CHARTS = PUBLISHED / "full"  # of families of which all points were run together
 
 
 def _row(outcome: Outcome) -> dict[str, str]:
