@@ -22,7 +22,6 @@ MPI_ENVIRONMENT = {
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "OMPI_MCA_hwloc_base_binding_policy": "none",
-    "OMPI_MCA_odls_base_sigkill_timeout": "10",  # seconds between SIGTERM and SIGKILL: room to write a checkpoint
     "OMP_WAIT_POLICY": "passive",
 }
 

@@ -20,6 +20,7 @@ import pyvista
 from verification.solver import MPI_ENVIRONMENT, ROOT, Options, Run, program, run
 
 SCENE = ROOT / "cases" / "crossing_2d" / "case.toml"
+PATIENT = {"OMPI_MCA_odls_base_sigkill_timeout": "10"}  # mpirun kills a second after SIGTERM: short on a loaded machine
 LAST_LINE = re.compile(r"digest [0-9a-f]{16} step 20 particles \d+ ranks (\d) particle-steps/s [0-9.e+]+")
 
 
@@ -97,7 +98,7 @@ def fluid_velocity(finished: Run, step: int) -> float:
 def test_a_signal_leaves_a_checkpoint_to_go_on_from(tmp_path: Path, ranks: int, number: signal.Signals) -> None:
     endless = Options(ranks=ranks, steps=10_000_000, overrides=("output.sample=10",))
     process = subprocess.Popen(
-        endless.command(SCENE, tmp_path), env=os.environ | MPI_ENVIRONMENT, stdout=subprocess.PIPE, text=True
+        endless.command(SCENE, tmp_path), env=os.environ | MPI_ENVIRONMENT | PATIENT, stdout=subprocess.PIPE, text=True
     )
     until = time.monotonic() + 60
     while not (tmp_path / "series.csv").exists() or len((tmp_path / "series.csv").read_text().splitlines()) < 4:
