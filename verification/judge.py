@@ -228,7 +228,7 @@ def judge(case: Case, tier: str, runs: dict[tuple[str, ...], Run]) -> list[Outco
 def _at_zero(finest: Outcome) -> Outcome:
     """The value extrapolated over the levels as an outcome of its own, with its own goal."""
     found = extrapolated(list(finest.spacings), [level.value for level in finest.levels])
-    objection = "; ".join(dict.fromkeys(filter(None, (level.objection for level in finest.levels))))
+    objection = "; ".join(dict.fromkeys(filter(None, (level.objection for level in finest.levels[-found.used :]))))
     observable = replace(finest.observable, symbol=f"{finest.observable.symbol}, dx to 0",
                          goal=finest.observable.extrapolated, order=None, extrapolated=None)
     sources = {name: value for name, value in finest.sources.items() if name != "resolution"}

@@ -69,6 +69,7 @@ class Extrapolated:
     value: float
     uncertainty: float
     how: str
+    used: int  # of the levels, the finest
 
 
 def _fitted(h: np.ndarray, values: np.ndarray, order: int) -> tuple[float, float]:
@@ -87,9 +88,9 @@ def extrapolated(h: list[float], values: list[float]) -> Extrapolated:
         correction = abs(found.richardson - values[-1])
         second = values[-1] + (values[-1] - values[-2]) / ((h[-2] / h[-1]) ** 2 - 1)
         spread = max((SAFETY - 1) * correction, abs(found.richardson - second))
-        return Extrapolated(found.richardson, spread / 2, f"Richardson, order {found.order:.2f}")
+        return Extrapolated(found.richardson, spread / 2, f"Richardson, order {found.order:.2f}", 3)
     fits = {order: _fitted(np.array(h), np.array(values), order) for order in (1, 2)}
     best = min(fits, key=lambda order: fits[order][1])
     value, error = fits[best]
     other = fits[3 - best][0]
-    return Extrapolated(value, math.hypot(error, (value - other) / 2), f"least squares, order {best}")
+    return Extrapolated(value, math.hypot(error, (value - other) / 2), f"least squares, order {best}", len(values))

@@ -195,10 +195,12 @@ def test_the_extrapolated_value_has_its_own_goal() -> None:
     assert _at_zero(tight).verdict == WRONG
 
 
-def test_an_objection_on_any_level_bars_the_extrapolation() -> None:
+def test_an_objection_on_a_level_that_is_used_bars_the_extrapolation() -> None:
     given = Observable("drag", "F", 50.0, 0.01, "nobody at all", goal=0.02, extrapolated=0.01)
     levels = (Measured(51.0, 0.0, "not settled"), Measured(50.2, 0.0), Measured(50.1, 0.0))
     assert _at_zero(Outcome(given, levels[-1], {}, tuple(H), levels)).verdict == OPEN
+    coarser = (Measured(55.0, 0.0, "not settled"), *(Measured(50 + 3 * h**2, 0.0) for h in H))
+    assert _at_zero(Outcome(given, coarser[-1], {"Mach": 0.1}, (0.8, *H), coarser)).verdict == CORRECT  # three levels count
 
 
 LEVELS = """
