@@ -138,6 +138,8 @@ class Outcome:
     @property
     def line(self) -> str:
         observable, measured = self.observable, self.measured
+        if self.verdict == SKIPPED:
+            return f"{observable.symbol} = {measured.value:.6g} ({SKIPPED}: {self.reason})"
         half_width = COVERAGE * self.u_num * self.scale if self.sources else measured.uncertainty
         basis = f"goal {self.in_words(observable.goal)}"
         if not self.by_goal_alone:
