@@ -111,7 +111,7 @@ def convergence(outcome: Outcome, refined: str, file: Path) -> None:
 
 def uncertainty_split(result: CaseResult, file: Path) -> None:
     """Where u_num comes from: one bar a source, of every observable, relative to its goal."""
-    shown = [outcome for outcome in result.outcomes if outcome.sources and outcome.observable.goal > 0]
+    shown = [one for one in result.outcomes if one.sources and one.observable.goal > 0 and one.verdict != SKIPPED]
     sources = list(dict.fromkeys(source for outcome in shown for source in outcome.sources))
     with figure_of(file, 4.6, 0.9 + 0.3 * len(sources) * max(1, 0.6 * len(shown))) as axes:
         height = 0.8 / len(shown)

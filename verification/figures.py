@@ -57,7 +57,8 @@ def case_figures(result: CaseResult, out: Path) -> CaseFigures:
         if outcome.verdict != SKIPPED:
             drawn.append(out / f"{case.name}_levels{k}.svg")
             charts.convergence(outcome, case.refined, drawn[-1])
-    if any(len(outcome.sources) > 1 and outcome.observable.goal > 0 for outcome in result.outcomes):
+    judged = [outcome for outcome in result.outcomes if outcome.verdict != SKIPPED and outcome.observable.goal > 0]
+    if any(len(outcome.sources) > 1 for outcome in judged):
         drawn.append(out / f"{case.name}_sources.svg")
         charts.uncertainty_split(result, drawn[-1])
     return CaseFigures(field, tuple(drawn), beside)

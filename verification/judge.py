@@ -42,7 +42,8 @@ class Outcome:
     @property
     def scale(self) -> float:
         """What errors and goals are relative to."""
-        return abs(self.observable.reference) or 1.0
+        reference = abs(self.observable.reference)
+        return reference if reference > 0 else 1.0
 
     @property
     def error(self) -> float:

@@ -149,5 +149,6 @@ def write_report(tier: str, out: Path, publish: bool) -> int:
     verdicts = [outcome.verdict for result in results for outcome in result.outcomes]
     skipped = f", {verdicts.count(SKIPPED)} SKIPPED" if SKIPPED in verdicts else ""
     print(f"{verdicts.count(CORRECT)} of {len(verdicts)} observables CORRECT{skipped}; took {content['took']}")
-    print(f"report: {out / 'index.html'}: {'everything holds' if holds else 'SOMETHING DOES NOT HOLD'}")
+    that_ran = " that was run" if skipped else ""
+    print(f"report: {out / 'index.html'}: {f'everything{that_ran} holds' if holds else 'SOMETHING DOES NOT HOLD'}")
     return 0 if holds else 1
