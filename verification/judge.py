@@ -245,4 +245,5 @@ def beside(case: Case, runs: dict[tuple[str, ...], Run]) -> list[tuple[str, Outc
         (entry.label, Outcome(replace(observable, order=None), measure(case, observable, runs[base + entry.overrides])))
         for entry in case.beside
         for observable in case.observables
+        if not observable.skipped
     ]
