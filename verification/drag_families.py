@@ -46,7 +46,7 @@ def drag_errors(results: list[CaseResult]) -> Chart:
         bars = 100 * _bars(points) / np.array([outcome.scale for _, outcome in points])
         fractions = np.array([fraction for fraction, _ in points])
         curves.append(Curve(f"Re {number:g}", fractions, errors, points=True, error=bars))
-    return Chart("Error of the drag at the finest level", "solids fraction", "E, %", tuple(curves))
+    return Chart(f"{results[0].case.family}: error of the drag at the finest level", "solids fraction", "E, %", tuple(curves))
 
 
 def drag_of_one_sphere(results: list[CaseResult]) -> list[Chart]:
