@@ -19,7 +19,7 @@ def result(fraction: float, reynolds: float, drag: float, value: float) -> Simpl
     scene = {"box": {"size": [side] * 3}, "body": [{"radius": 1.0}],
              "fluid": {"reference_velocity": 1.0, "density": 1.0, "viscosity": 2 / reynolds}}
     observable = Observable("drag", "F", drag, 0.0, "Zick and Homsy", 0.03)
-    return SimpleNamespace(case=SimpleNamespace(scene=scene), outcomes=(Outcome(observable, Measured(value, 0.0), {"Mach": 0.01}),))
+    return SimpleNamespace(case=SimpleNamespace(scene=scene, family="spheres"), outcomes=(Outcome(observable, Measured(value, 0.0), {"Mach": 0.01}),))
 
 
 RESULTS = [result(phi, 0.1, drag, 1.02 * drag) for phi, drag in STOKES.items()] + [result(0.125, 10.0, 4.4, 4.4)]
