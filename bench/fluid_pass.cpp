@@ -17,12 +17,15 @@ struct Setup {
   CellGrid<D> grid;
   std::uint64_t owned = 0, pairs = 0;
 
-  Setup(std::uint64_t side, int cells_per_cutoff) : fluid(side), particles(fluid.state(Region<D>::whole_box()).fluid) {
+  Setup(std::uint64_t side, int across, int along) : fluid(side), particles(fluid.state(Region<D>::whole_box()).fluid) {
     Region<D> region;
     for (int axis = 0; axis < D; ++axis) {
       region.low[axis] = std::ceil(1.0 / fluid.model.pair.length[axis]);
       region.high[axis] = box_quanta - region.low[axis];
     }
+    Vec<D, int> cells_per_cutoff;
+    for (int axis = 1; axis < D; ++axis) cells_per_cutoff[axis] = across;
+    cells_per_cutoff[0] = along;
     grid.fit(region, fluid.model.pair.length, cells_per_cutoff);
     grid.sort(particles);
     count(region);
@@ -46,7 +49,7 @@ struct Setup {
 
 template <int D>
 void pair_pass(benchmark::State& state) {
-  Setup<D> setup(D == 2 ? 320 : 48, static_cast<int>(state.range(0)));
+  Setup<D> setup(D == 2 ? 320 : 48, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   FluidPass<D> pass(setup.fluid.model, 1);
   std::vector<NeighbourSums<D>> frozen_sums;
   for (auto _ : state) {
@@ -62,13 +65,13 @@ void pair_pass(benchmark::State& state) {
 
 BENCHMARK(pair_pass<2>)
     ->Name("fluid_pass_2d_39_neighbours")
-    ->ArgName("cells_per_cutoff")
-    ->DenseRange(1, 4)
+    ->ArgNames({"across", "along"})
+    ->ArgsProduct({{1, 2, 3, 4}, {4, 8, 16}})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(pair_pass<3>)
     ->Name("fluid_pass_3d_77_neighbours")
-    ->ArgName("cells_per_cutoff")
-    ->DenseRange(1, 3)
+    ->ArgNames({"across", "along"})
+    ->ArgsProduct({{1, 2, 3}, {4, 8, 16}})
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -43,32 +43,23 @@ MAPPM_INLINE Lanes load_lanes(const double* from) { return Lanes(from, std::expe
 MAPPM_INLINE IntLanes load_lanes(const std::int64_t* from) {
   return IntLanes(from, std::experimental::element_aligned);
 }
+MAPPM_INLINE void store_lanes(const Lanes& lanes, double* to) { lanes.copy_to(to, std::experimental::element_aligned); }
 MAPPM_INLINE void store_lanes(const IntLanes& lanes, std::int64_t* to) {
   lanes.copy_to(to, std::experimental::element_aligned);
 }
 
-/// All bits set, then none: read from `lane_count - count` on, it keeps the first `count` lanes.
-inline constexpr auto lane_window = [] {
-  std::array<std::int64_t, 2 * lane_count> window{};
-  for (int lane = 0; lane < lane_count; ++lane) window[lane] = -1;
-  return window;
-}();
-
-/// `x` in the first `count` lanes, `other` in the rest. By bits, since clang 14 leaves out the assignment through
-/// `std::experimental::where` when it compiles for AVX-512.
-MAPPM_INLINE Lanes first_lanes(int count, const Lanes& x, double other) {
-  const IntLanes keep = load_lanes(&lane_window[lane_count - count]);
-  const IntLanes bits = (bits_of(x) & keep) | (bits_of(Lanes(other)) & ~keep);
-  Lanes result;
-  std::memcpy(static_cast<void*>(&result), static_cast<const void*>(&bits), sizeof result);
-  return result;
+/// 0, 1, 2, ...
+MAPPM_INLINE Lanes lane_numbers() {
+  return Lanes([](auto lane) { return static_cast<double>(lane); });
 }
 
-/// Stores only the first `count` lanes; the memory of the others is not touched.
-MAPPM_INLINE void store_first_lanes(int count, const IntLanes& lanes, std::int64_t* to) {
-  const IntLanes index([](auto lane) { return static_cast<std::int64_t>(lane); });
-  std::experimental::where(index < IntLanes(count), lanes).copy_to(to, std::experimental::element_aligned);
+/// The whole parts of non-negative numbers, or of numbers above -1.
+MAPPM_INLINE void whole_numbers(const Lanes& lanes, std::int32_t* to) {
+  using Int32Lanes = std::experimental::rebind_simd_t<std::int32_t, Lanes>;
+  std::experimental::static_simd_cast<Int32Lanes>(lanes).copy_to(to, std::experimental::element_aligned);
 }
+
+MAPPM_INLINE bool any_below(const Lanes& lanes, double limit) { return std::experimental::any_of(lanes < limit); }
 
 MAPPM_INLINE std::int64_t sum_of_lanes(const IntLanes& lanes) { return std::experimental::reduce(lanes); }
 

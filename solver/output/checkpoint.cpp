@@ -33,7 +33,8 @@ double field_quantum(int field) {
   return field < D ? 1.0 : velocity_quantum;
 }
 
-std::vector<std::int64_t> counts(const std::vector<double>& values, double quantum) {
+template <class Values>
+std::vector<std::int64_t> counts(const Values& values, double quantum) {
   std::vector<std::int64_t> result(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) result[i] = static_cast<std::int64_t>(values[i] / quantum);
   return result;

@@ -26,10 +26,15 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// Cells to a cutoff, by measurement (bench/fluid_pass.cpp, 39 and 77 neighbours): in the plane two and three are
-/// equal, in space rows of narrower cells leave more lanes empty and cost a third.
+/// Cells to a cutoff, by measurement (bench/fluid_pass.cpp, 39 and 77 neighbours): narrow along a row, where they only
+/// order its particles; across, more rows would leave more lanes empty.
 template <int D>
-constexpr int cells_per_cutoff = D == 2 ? 3 : 2;
+Vec<D, int> cells_per_cutoff() {
+  Vec<D, int> cells;
+  cells[0] = 8;
+  for (int axis = 1; axis < D; ++axis) cells[axis] = 1;
+  return cells;
+}
 
 template <int D>
 Vec<D, double> in_cutoffs(const Model<D>& model, const Vec<D, double>& x) {
@@ -72,7 +77,7 @@ void ParallelEngine<D>::rebalance() {
 template <int D>
 void ParallelEngine<D>::start_domains() {
   halo_ = std::make_unique<Halo<D>>(model_, domains_, communicator_);
-  grid_.fit(halo_->region(), model_.pair.length, cells_per_cutoff<D>);
+  grid_.fit(halo_->region(), model_.pair.length, cells_per_cutoff<D>());
   if (model_.shapes.empty()) return;
   Vec<D, double> low = in_cutoffs(model_, halo_->region().low), high = in_cutoffs(model_, halo_->region().high);
   double smallest = model_.largest_reach;
@@ -186,7 +191,7 @@ void ParallelEngine<D>::sum_frozen_densities() {
             const FrozenInStep<D>&fp = frozen_[k], &partner = frozen_[n];
             const Vec<D, double> r = separation(model_.pair, fp.place.x - partner.place.x);
             frozen_sums_[k].density +=
-                pair_density<Kernel>(model_.pair, r, fp.place.v - partner.place.v, cut_distance(r));
+                pair_density<Kernel>(model_.pair, r, fp.place.v - partner.place.v, cut_distance(dot(r, r)));
           }
       });
     }
@@ -249,30 +254,35 @@ template <int D>
 void ParallelEngine<D>::move_fluid() {
   FluidParticles<D>& fluid = state_.fluid;
   const ParticleStep<D> constants = particle_step(model_, state_.step);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> rows;
+  struct Row {
+    std::uint32_t first, last;
+    int plane;
+  };
+  std::vector<Row> rows;
   Vec<D, int> row;
   const auto add_row = [&] {
-    const std::size_t cells = grid_.row(row) + static_cast<std::size_t>(grid_.margin());
-    rows.emplace_back(grid_.start(cells), grid_.start(cells + static_cast<std::size_t>(grid_.inner(0))));
+    const std::size_t cells = grid_.row(row) + static_cast<std::size_t>(grid_.margin(0));
+    rows.push_back({grid_.start(cells), grid_.start(cells + static_cast<std::size_t>(grid_.inner(0))), row[D - 1]});
   };
-  const auto first_inner = grid_.margin();
-  for (row[D - 1] = first_inner; row[D - 1] < first_inner + grid_.inner(D - 1); ++row[D - 1]) {
+  const auto first_inner = [&](int axis) { return grid_.margin(axis); };
+  const auto end_inner = [&](int axis) { return grid_.margin(axis) + grid_.inner(axis); };
+  for (row[D - 1] = first_inner(D - 1); row[D - 1] < end_inner(D - 1); ++row[D - 1]) {
     if constexpr (D == 2)
       add_row();
     else
-      for (row[1] = first_inner; row[1] < first_inner + grid_.inner(1); ++row[1]) add_row();
+      for (row[1] = first_inner(1); row[1] < end_inner(1); ++row[1]) add_row();
   }
   std::vector<Vec<D, Int128>> given(model_.terms.force_field ? rows.size() : 0);  // by the field of force, to each row
   with_force_field(model_, state_.step, [&]<bool field>(std::bool_constant<field>) {
 #pragma omp parallel for num_threads(options_.threads) schedule(static) if (options_.threads > 1)
     for (std::size_t n = 0; n < rows.size(); ++n)
-      for (std::size_t i = rows[n].first; i < rows[n].second; ++i) {
+      for (std::uint32_t i = rows[n].first; i < rows[n].last; ++i) {
         Vec<D, double> x, v;
         for (int axis = 0; axis < D; ++axis) {
           x[axis] = fluid.x(axis)[i];
           v[axis] = fluid.v(axis)[i];
         }
-        NeighbourSums<D> sums = pass_.sums(i);
+        NeighbourSums<D> sums = pass_.sums(i, rows[n].plane);
         if constexpr (field) {
           const Vec<D, std::int64_t> impulse = field_impulse(model_.fluid_field, x);
           sums.impulse += impulse;
@@ -291,7 +301,7 @@ void ParallelEngine<D>::move_fluid() {
   });
   for (const Vec<D, Int128>& impulse : given) state_.outside_impulse += impulse;
   std::size_t kept = 0;
-  for (const auto& [first, last] : rows) {
+  for (const auto& [first, last, plane] : rows) {
     std::copy(fluid.id.begin() + first, fluid.id.begin() + last, fluid.id.begin() + static_cast<std::ptrdiff_t>(kept));
     for (auto& values : fluid.field)
       std::copy(values.begin() + first, values.begin() + last, values.begin() + static_cast<std::ptrdiff_t>(kept));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "physics/wall.hpp"
+
 namespace mappm {
 
 namespace {
@@ -29,7 +31,7 @@ template <class Kernel, int D, class Beta>
 Vec<D, std::int64_t> impulse_of_pair(const Model<D>& model, const Body<D>& i, const Body<D>& j, Beta&& beta) {
   const FluidPair<D, double> pair{i.x - j.x, i.v - j.v, i.volume.v2 + j.volume.v2, i.volume.pv2 + j.volume.pv2};
   const Vec<D, double> r = separation(model.pair, pair.d);
-  return fluid_pair<Kernel, false>(model.pair, pair, r, cut_distance(r), beta(r)).impulse;
+  return fluid_pair<Kernel, false>(model.pair, pair, r, cut_distance(dot(r, r)), beta(r)).impulse;
 }
 
 template <int D>
@@ -46,8 +48,8 @@ void FaceLedger<D>::for_each_near(const Vec<D, double>& x, Visit&& visit) const 
   Vec<D, int> first, last;
   for (int axis = 0; axis < D; ++axis) {
     const int cell = grid_.coordinate(axis, x[axis]);
-    first[axis] = std::max(0, cell - grid_.margin());
-    last[axis] = std::min(grid_.count(axis) - 1, cell + grid_.margin());
+    first[axis] = std::max(0, cell - grid_.margin(axis));
+    last[axis] = std::min(grid_.count(axis) - 1, cell + grid_.margin(axis));
   }
   Vec<D, int> row = first;
   while (row[D - 1] <= last[D - 1]) {
@@ -101,7 +103,7 @@ Vec<D, Int128> FaceLedger<D>::received(const FluidParticles<D>& fluid, const Flu
                                        const std::vector<FrozenInStep<D>>& frozen,
                                        const std::vector<NeighbourSums<D>>& frozen_sums) const {
   Vec<D, Int128> sum{};
-  for (std::size_t i = 0; i < fluid.size(); ++i)
+  for (std::uint32_t i = 0; i < fluid.size(); ++i)
     if (region_.contains(body_of(model_, fluid, i).x)) add(sum, pass.sums(i).impulse, 1);
   for (std::size_t k = 0; k < frozen.size(); ++k)
     if (region_.contains(frozen[k].place.x)) add(sum, frozen_sums[k].impulse, 1);

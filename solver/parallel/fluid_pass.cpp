@@ -1,33 +1,15 @@
 #include "parallel/fluid_pass.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "physics/wall.hpp"
 
 namespace mappm {
 
 namespace {
-
-/// Sums of an owned or ghost PP as the centre of a row, added to the field arrays.
-template <int D>
-void add_to_fields(const PairFields<D>& fields, std::size_t i, const NeighbourSums<D>& sums, bool transport) {
-  for (int axis = 0; axis < D; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    fields.impulse[a][i] += sums.impulse[axis];
-    if (transport) fields.shift[a][i] += sums.shift[axis];
-  }
-  fields.density[i] += sums.density;
-}
-
-template <class T>
-void fit(std::vector<T>& values, std::size_t count) {
-  reserve_tightly(values, count);
-  values.resize(count);
-}
-
-void clear(std::vector<std::int64_t>& sums, std::size_t count) {
-  reserve_tightly(sums, count);
-  sums.assign(count, 0);
-}
 
 struct UnitFactor {
   template <int D>
@@ -38,117 +20,48 @@ struct UnitFactor {
 
 /// beta of the pairs of one FP.
 template <int D>
-struct NoSlipFactor {
-  const Model<D>& model;
-  const FrozenInStep<D>& fp;
-  Lanes operator()(const Vec<D, Lanes>& r) const {
-    if (!model.terms.extrapolated) return Lanes(1.0);
+class NoSlipFactor {
+ public:
+  NoSlipFactor(const Model<D>& model, const FrozenInStep<D>& fp)
+      : extrapolated_(model.terms.extrapolated),
+        normal_(fp.place.normal),
+        depth_(fp.depth),
+        nearest_(model.no_slip_nearest) {}
+  MAPPM_INLINE Lanes operator()(const Vec<D, Lanes>& r) const {
+    if (!extrapolated_) return Lanes(1.0);
     Vec<D, Lanes> normal;
-    for (int axis = 0; axis < D; ++axis) normal[axis] = Lanes(fp.place.normal[axis]);
-    return no_slip_factor(r, normal, Lanes(fp.depth), model.no_slip_nearest);
+    for (int axis = 0; axis < D; ++axis) normal[axis] = Lanes(normal_[axis]);
+    return no_slip_factor(r, normal, Lanes(depth_), nearest_);
   }
+
+ private:
+  bool extrapolated_;
+  Vec<D, double> normal_;
+  double depth_, nearest_;
 };
 
 }  // namespace
 
 template <int D>
-NeighbourSums<D> FluidPass<D>::sums(std::size_t i) const {
-  NeighbourSums<D> result;
-  for (int axis = 0; axis < D; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    result.impulse[axis] = impulse_[a][i];
-    result.shift[axis] = model_.terms.transport ? shift_[a][i] : 0;
-  }
-  result.density = density_[i];
-  return result;
+MAPPM_INLINE PairCentre<D> FluidPass<D>::centre(const FrozenInStep<D>& fp) const {
+  return {fp.place.x, fp.place.v, fp.volume};
 }
 
-template <int D>
-void FluidPass<D>::prepare(FluidParticles<D>& fluid) {
-  const std::size_t count = fluid.size(), padded = count + lane_count;
-  for (auto& values : fluid.field) {
-    // Whole lanes are read behind the last particle. They count as beyond the cutoff, but 0 times NaN would not be 0.
-    reserve_tightly(values, padded);
-    values.resize(padded, 0.0);
-    values.resize(count);
-  }
-  fit(v2_, padded);
-  fit(pv2_, padded);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto volume = volume_terms(fluid.density()[i], model_.rest_density, 1.0, model_.background);
-    v2_[i] = volume.v2;
-    pv2_[i] = volume.pv2;
-  }
-  for (int axis = 0; axis < D; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    clear(impulse_[a], padded);
-    if (model_.terms.transport) clear(shift_[a], padded);
-  }
-  clear(density_, padded);
-}
-
-template <int D>
-PairFields<D> FluidPass<D>::fields(const FluidParticles<D>& fluid) {
-  PairFields<D> fields;
-  for (int axis = 0; axis < D; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    fields.x[a] = fluid.x(axis).data();
-    fields.v[a] = fluid.v(axis).data();
-    fields.impulse[a] = impulse_[a].data();
-    fields.shift[a] = shift_[a].data();
-  }
-  fields.v2 = v2_.data();
-  fields.pv2 = pv2_.data();
-  fields.density = density_.data();
-  return fields;
-}
-
-template <int D>
-PairCentre<D> FluidPass<D>::centre(const FluidParticles<D>& fluid, std::size_t i) const {
-  PairCentre<D> centre;
-  for (int axis = 0; axis < D; ++axis) {
-    centre.x[axis] = fluid.x(axis)[i];
-    centre.v[axis] = fluid.v(axis)[i];
-  }
-  centre.volume = {v2_[i], pv2_[i]};
-  return centre;
-}
-
-/// Rows (cells that differ only in x) within the cutoff. `half`: only rows after the own one in memory, and itself.
-template <int D>
-auto FluidPass<D>::rows_within_cutoff(const CellGrid<D>& grid, bool half) const -> std::vector<RowOffset> {
-  std::vector<RowOffset> rows;
-  const int k = grid.margin();
-  const int slow = D == 3 ? k : 0;
-  for (int dz = half ? 0 : -slow; dz <= slow; ++dz)
-    for (int dy = half && dz == 0 ? 0 : -k; dy <= k; ++dy) {
-      RowOffset row;
-      row.cell[1] = dy;
-      if constexpr (D == 3) row.cell[2] = dz;
-      double square = 1.0;  // of the largest distance along x at which a pair can be within the cutoff
-      for (int axis = 1; axis < D; ++axis) {
-        const double gap = std::max(0, std::abs(row.cell[axis]) - 1) * grid.width(axis);
-        square -= gap * gap;
-      }
-      if (square <= 0.0) continue;
-      row.reach = static_cast<int>(std::ceil(std::sqrt(square) / grid.width(0)));
-      rows.push_back(row);
-    }
-  return rows;
-}
-
-/// Calls work(first, last) for bands of planes (cells with one coordinate on the slowest axis). A band writes at most
-/// `margin` planes beyond itself, so bands of one parity, each two margins high, run side by side.
+/// Calls work(first, last, search) for bands of planes (cells with one coordinate on the slowest axis). What a band
+/// writes lies at most `margin` planes beyond itself, so bands of one parity, each two margins high, run side by side.
 template <int D>
 template <class Work>
-void FluidPass<D>::for_each_band(const CellGrid<D>& grid, Work&& work) const {
+void FluidPass<D>::for_each_band(const CellGrid<D>& grid, Work&& work) {
   const int planes = grid.count(D - 1);
-  if (threads_ == 1) return work(0, planes);
-  const int height = std::max(2 * grid.margin(), planes / (4 * threads_) + 1);
+  searches_.resize(static_cast<std::size_t>(threads_));
+  if (threads_ == 1) return work(0, planes, searches_.front());
+  const int height = std::max(2 * grid.margin(D - 1), planes / (4 * threads_) + 1);
   const int bands = (planes + height - 1) / height;
   for (int parity = 0; parity < 2; ++parity) {
 #pragma omp parallel for num_threads(threads_) schedule(dynamic)
-    for (int band = parity; band < bands; band += 2) work(band * height, std::min(planes, (band + 1) * height));
+    for (int band = parity; band < bands; band += 2)
+      work(band * height, std::min(planes, (band + 1) * height),
+           searches_[static_cast<std::size_t>(omp_get_thread_num())]);
   }
 }
 
@@ -156,153 +69,159 @@ template <int D>
 template <class Work>
 void FluidPass<D>::for_each_row(const CellGrid<D>& grid, int first_plane, int last_plane, Work&& work) const {
   Vec<D, int> row;
-  for (row[D - 1] = first_plane; row[D - 1] < last_plane; ++row[D - 1]) {
-    if constexpr (D == 2)
-      work(row);
-    else
-      for (row[1] = 0; row[1] < grid.count(1); ++row[1]) work(row);
+  if constexpr (D == 2) {
+    for (row[1] = first_plane; row[1] < last_plane; ++row[1]) work(row);
+  } else {
+    // In blocks, of which two planes fit a core's own cache.
+    constexpr int block = 4;
+    for (int first = 0; first < grid.count(1); first += block)
+      for (row[2] = first_plane; row[2] < last_plane; ++row[2])
+        for (row[1] = first; row[1] < std::min(first + block, grid.count(1)); ++row[1]) work(row);
   }
+}
+
+/// Indices of the FPs in each plane of cells, ordered by rows.
+template <int D>
+std::vector<std::vector<std::uint32_t>> frozen_by_plane(const CellGrid<D>& grid,
+                                                        const std::vector<FrozenInStep<D>>& frozen) {
+  std::vector<std::vector<std::uint32_t>> by_plane(static_cast<std::size_t>(grid.count(D - 1)));
+  for (std::uint32_t k = 0; k < frozen.size(); ++k)
+    by_plane[static_cast<std::size_t>(grid.coordinate(D - 1, frozen[k].place.x[D - 1]))].push_back(k);
+  if constexpr (D == 3)
+    for (auto& plane : by_plane)
+      std::ranges::sort(plane, {}, [&](std::uint32_t k) { return grid.coordinate(1, frozen[k].place.x[1]); });
+  return by_plane;
 }
 
 template <int D>
 void FluidPass<D>::sum(FluidParticles<D>& fluid, const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
                        std::vector<NeighbourSums<D>>& frozen_sums) {
-  prepare(fluid);
-  half_rows_ = rows_within_cutoff(grid, true);
-  all_rows_ = rows_within_cutoff(grid, false);
-  const PairFields<D> arrays = fields(fluid);
+  blocks_.fill(model_, fluid, grid);
+  half_rows_ = row_offsets(grid, true);
+  all_rows_ = row_offsets(grid, false);
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
-    for_each_band(grid, [&](int first, int last) {
-      for_each_row(grid, first, last,
-                   [&](const Vec<D, int>& row) { sum_row<Kernel, transport>(fluid, grid, arrays, row); });
+    for_each_band(grid, [&](int first, int last, Search& search) {
+      for_each_row(grid, first, last, [&](const Vec<D, int>& row) { sum_row<Kernel, transport>(grid, row, search); });
     });
     frozen_sums.assign(frozen.size(), {});
-    std::vector<std::vector<std::uint32_t>> by_plane(static_cast<std::size_t>(grid.count(D - 1)));
-    for (std::uint32_t k = 0; k < frozen.size(); ++k)
-      by_plane[static_cast<std::size_t>(grid.coordinate(D - 1, frozen[k].place.x[D - 1]))].push_back(k);
-    for_each_band(grid, [&](int first, int last) {
+    const std::vector<std::vector<std::uint32_t>> by_plane = frozen_by_plane(grid, frozen);
+    for_each_band(grid, [&](int first, int last, Search& search) {
       for (int plane = first; plane < last; ++plane)
-        for (const std::uint32_t k : by_plane[static_cast<std::size_t>(plane)])
-          sum_frozen<Kernel, transport>(grid, arrays, frozen[k], frozen_sums[k]);
+        for_each_frozen_list(
+            grid, frozen, by_plane[static_cast<std::size_t>(plane)], search,
+            [&](PartnerLists<D>& lists) { sum_frozen<Kernel, transport>(frozen, lists, frozen_sums); });
     });
   });
 }
 
-/// All pairs of PPs whose first one lies in this row: calls work(i, for_each_range) for each particle i of the row, in
-/// which for_each_range(pair_with) calls pair_with(first, last) for its ranges of partners. A pair of two ghosts is
-/// left out.
+/// All pairs of PPs whose first one lies in this row: calls work(lists) with the partners of some of its particles. A
+/// pair of two ghosts is left out.
 template <int D>
 template <class Work>
-void FluidPass<D>::for_each_centre(const CellGrid<D>& grid, const Vec<D, int>& row, Work&& work) const {
-  const auto is_inner_row = [&](const Vec<D, int>& at) {
-    for (int axis = 1; axis < D; ++axis)
-      if (!grid.is_inner(axis, at[axis])) return false;
-    return true;
-  };
-  const int inner_first = grid.margin(), inner_last = grid.margin() + grid.inner(0) - 1;
-  const bool inner_row = is_inner_row(row);
-  const std::size_t own_row = grid.row(row);
-  std::array<std::pair<std::uint32_t, std::uint32_t>, 64> range;
-  for (int cell = 0; cell < grid.count(0); ++cell) {
-    const std::uint32_t begin = grid.start(own_row + static_cast<std::size_t>(cell));
-    const std::uint32_t end = grid.start(own_row + static_cast<std::size_t>(cell) + 1);
-    if (begin == end) continue;
-    const bool ghost = !inner_row || !grid.is_inner(0, cell);
-    std::size_t ranges = 0;
-    for (const RowOffset& offset : half_rows_) {
-      const Vec<D, int> other = row + offset.cell;
-      bool inside = true;
-      for (int axis = 1; axis < D; ++axis) inside = inside && other[axis] >= 0 && other[axis] < grid.count(axis);
-      if (!inside || (ghost && !is_inner_row(other))) continue;
-      const bool same_row = &offset == &half_rows_.front();
-      const int first = same_row ? cell : std::max(cell - offset.reach, ghost ? inner_first : 0);
-      const int last = std::min(cell + offset.reach, ghost ? inner_last : grid.count(0) - 1);
-      const std::size_t cells = grid.row(other);
-      range[ranges++] = {grid.start(cells + static_cast<std::size_t>(std::max(first, ghost ? inner_first : 0))),
-                         last < first ? 0u : grid.start(cells + static_cast<std::size_t>(last) + 1)};
-      if (same_row) range[ranges - 1].first = std::max(range[ranges - 1].first, begin);
+void FluidPass<D>::for_each_list(const CellGrid<D>& grid, const Vec<D, int>& row, Search& search, Work&& work) {
+  bool inner_row = true;
+  for (int axis = 1; axis < D; ++axis) inner_row = inner_row && grid.is_inner(axis, row[axis]);
+  auto& [near, lists] = search;
+  const auto run = [&](int begin_cell, int end_cell, bool ghost) {
+    const std::size_t cells = grid.row(row);
+    const std::uint32_t gap = blocks_.gap(row[D - 1]);
+    const std::uint32_t begin = grid.start(cells + static_cast<std::size_t>(begin_cell)) + gap;
+    const std::uint32_t end = grid.start(cells + static_cast<std::size_t>(end_cell)) + gap;
+    if (begin == end) return;
+    near.fit(grid, blocks_, half_rows_, row, ghost);
+    for (std::uint32_t block = begin / lane_count; block * lane_count < end; ++block) {
+      Vec<D, Lanes> places;
+      for (int axis = 0; axis < D; ++axis) places[axis] = load_lanes(blocks_.data()[block].x[axis]);
+      near.find(grid, places);
+      const std::uint32_t last = std::min((block + 1) * lane_count, end);
+      for (std::uint32_t i = std::max(block * lane_count, begin); i < last; ++i)
+        lists.add(
+            i, blocks_.centre(i).x, near.count(), [&](std::size_t n) __attribute__((always_inline)) {
+              auto range = near.range(grid, n, i % lane_count);
+              range.first = std::max(range.first, i + 1);  // other rows lie behind i
+              return range;
+            });
+      if (!lists.is_full() && last < end) continue;
+      work(lists);
+      lists.clear();
     }
-    for (std::uint32_t i = begin; i < end; ++i)
-      work(
-          i, [&](auto&& pair_with) __attribute__((always_inline)) {
-            for (std::size_t n = 0; n < ranges; ++n) {
-              const std::uint32_t first = range[n].first <= i && i < range[n].second ? i + 1 : range[n].first;
-              if (first < range[n].second) pair_with(first, range[n].second);
-            }
-          });
-  }
+  };
+  const int first_inner = grid.margin(0), end_inner = grid.margin(0) + grid.inner(0);
+  if (!inner_row) return run(0, grid.count(0), true);
+  run(0, first_inner, true);
+  run(first_inner, end_inner, false);
+  run(end_inner, grid.count(0), true);
 }
 
 template <int D>
 template <class Kernel, bool transport>
-void FluidPass<D>::sum_row(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const PairFields<D>& fields,
-                           const Vec<D, int>& row) {
-  // A call for each particle and range would cost a tenth of the pass, and the compiler would choose it.
-  for_each_centre(
-      grid, row, [&](std::uint32_t i, const auto& for_each_range_of_i) __attribute__((always_inline)) {
-        detail::LaneSums<D> sums{};
-        const PairCentre<D> particle = centre(fluid, i);
-        for_each_range_of_i([&](std::uint32_t first, std::uint32_t last) __attribute__((always_inline)) {
-          pair_row<Kernel, transport, false>(model_.pair, fields, particle, first, last, UnitFactor{}, sums);
-        });
-        add_to_fields(fields, i, total(sums), transport);
-      });
-}
-
-/// Calls pair_with(first, last) for the ranges of PPs near one FP.
-template <int D>
-template <class PairWith>
-void FluidPass<D>::for_each_range(const CellGrid<D>& grid, const FrozenInStep<D>& fp, PairWith&& pair_with) const {
-  Vec<D, int> cell;
-  for (int axis = 0; axis < D; ++axis) cell[axis] = grid.coordinate(axis, fp.place.x[axis]);
-  for (const RowOffset& offset : all_rows_) {
-    const Vec<D, int> other = cell + offset.cell;
-    bool inside = true;
-    for (int axis = 1; axis < D; ++axis) inside = inside && other[axis] >= 0 && other[axis] < grid.count(axis);
-    if (!inside) continue;
-    const std::size_t cells = grid.row(other);
-    const int first = std::max(cell[0] - offset.reach, 0);
-    const int last = std::min(cell[0] + offset.reach, grid.count(0) - 1);
-    const std::uint32_t begin = grid.start(cells + static_cast<std::size_t>(first));
-    const std::uint32_t end = grid.start(cells + static_cast<std::size_t>(last) + 1);
-    if (begin < end) pair_with(begin, end);
-  }
-}
-
-/// All PPs near one FP; r of the law points from the FP to the PP.
-template <int D>
-template <class Kernel, bool transport>
-void FluidPass<D>::sum_frozen(const CellGrid<D>& grid, const PairFields<D>& fields, const FrozenInStep<D>& fp,
-                              NeighbourSums<D>& sums) const {
-  const PairCentre<D> particle{fp.place.x, fp.place.v, fp.volume};
-  const NoSlipFactor<D> beta{model_, fp};
-  detail::LaneSums<D> lanes{};
-  for_each_range(grid, fp, [&](std::uint32_t begin, std::uint32_t end) {
-    pair_row<Kernel, transport, true>(model_.pair, fields, particle, begin, end, beta, lanes);
+void FluidPass<D>::sum_row(const CellGrid<D>& grid, const Vec<D, int>& row, Search& search) {
+  for_each_list(grid, row, search, [&](PartnerLists<D>& lists) {
+    sum_lists<Kernel, transport, false>(
+        model_.pair, blocks_.data(), lists, [&](std::uint32_t i) { return blocks_.centre(i); },
+        [](std::uint32_t) { return UnitFactor{}; },
+        [&](std::uint32_t i, const NeighbourSums<D>& sums) { blocks_.add(i, sums); });
   });
-  sums = total(lanes);
 }
 
-/// One pair as the pass would compute it, alone: what it adds to the centre and to particle j.
+/// FPs of a plane of cells, ordered by rows: calls work(lists) with the PPs near some of them.
+template <int D>
+template <class Work>
+void FluidPass<D>::for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
+                                        std::span<const std::uint32_t> chosen, Search& search, Work&& work) const {
+  auto& [near, lists] = search;
+  const auto row_of = [&](std::size_t n) {
+    Vec<D, int> row;
+    for (int axis = 1; axis < D; ++axis) row[axis] = grid.coordinate(axis, frozen[chosen[n]].place.x[axis]);
+    return row;
+  };
+  for (std::size_t first = 0, end = 0; first < chosen.size(); first = end) {
+    const Vec<D, int> row = row_of(first);
+    Vec<D, Lanes> places{};
+    for (; end < chosen.size() && end - first < lane_count && row_of(end) == row; ++end)
+      for (int axis = 0; axis < D; ++axis) places[axis][end - first] = frozen[chosen[end]].place.x[axis];
+    near.fit(grid, blocks_, all_rows_, row, false);
+    near.find(grid, places);
+    for (std::size_t n = first; n < end; ++n)
+      lists.add(chosen[n], frozen[chosen[n]].place.x, near.count(),
+                [&](std::size_t other) { return near.range(grid, other, n - first); });
+    if (!lists.is_full() && end < chosen.size()) continue;
+    work(lists);
+    lists.clear();
+  }
+}
+
+/// r of the law points from the FP to the PP.
+template <int D>
+template <class Kernel, bool transport>
+void FluidPass<D>::sum_frozen(const std::vector<FrozenInStep<D>>& frozen, PartnerLists<D>& lists,
+                              std::vector<NeighbourSums<D>>& frozen_sums) {
+  sum_lists<Kernel, transport, true>(
+      model_.pair, blocks_.data(), lists, [&](std::uint32_t k) { return centre(frozen[k]); },
+      [&](std::uint32_t k) { return NoSlipFactor<D>(model_, frozen[k]); },
+      [&](std::uint32_t k, const NeighbourSums<D>& sums) { frozen_sums[k] = sums; });
+}
+
+/// One pair as the pass would compute it, alone: what it adds to the centre and to the PP at a place.
 template <int D>
 template <class Kernel, bool transport, bool lanes_first, class Beta>
-auto FluidPass<D>::sums_of_pair(const FluidParticles<D>& fluid, const PairCentre<D>& centre, std::uint32_t j,
-                                const Beta& beta) -> PairSums {
-  for (int axis = 0; axis < D; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    impulse_[a][j] = 0;
-    if constexpr (transport) shift_[a][j] = 0;
-  }
-  density_[j] = 0;
-  detail::LaneSums<D> lanes{};
-  pair_row<Kernel, transport, lanes_first>(model_.pair, fields(fluid), centre, j, j + 1, beta, lanes);
-  return {total(lanes), sums(j)};
+auto FluidPass<D>::sums_of_pair(const PairCentre<D>& centre, std::uint32_t place, const Beta& beta) const -> PairSums {
+  const std::uint32_t lane = place % lane_count;
+  PairBlocks<D> alone = blocks_.one(place);
+  PartnerLists<D> partner;
+  partner.add(0, centre.x, 1, [&](std::size_t) { return typename NearRows<D>::Range{lane, lane + 1}; });
+  PairSums result;
+  sum_lists<Kernel, transport, lanes_first>(
+      model_.pair, alone.data(), partner, [&](std::uint32_t) { return centre; }, [&](std::uint32_t) { return beta; },
+      [&](std::uint32_t, const NeighbourSums<D>& sums) { result.centre = sums; });
+  result.other = alone.sums(lane);
+  return result;
 }
 
 template <int D>
 std::optional<std::vector<PartnerTrace<D>>> FluidPass<D>::trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
                                                                 const std::vector<FrozenInStep<D>>& frozen,
-                                                                std::uint64_t particle) const {
+                                                                std::uint64_t particle) {
   std::vector<PartnerTrace<D>> partners;
   const auto keep = [&](const PartnerTrace<D>& partner) {
     if (partner.any()) partners.push_back(partner);
@@ -315,27 +234,28 @@ std::optional<std::vector<PartnerTrace<D>>> FluidPass<D>::trace(const FluidParti
   std::uint32_t traced = 0;
   while (traced < fluid.size() && !(fluid.id[traced] == particle && is_owned(traced))) ++traced;
   if (traced == fluid.size()) return std::nullopt;
-  FluidPass<D> alone = *this;  // sums elsewhere
+  const std::uint32_t place = blocks_.place(traced);
+  std::vector<std::uint64_t> ids(blocks_.place_count());
+  for (std::uint32_t i = 0; i < fluid.size(); ++i) ids[blocks_.place(i)] = fluid.id[i];
+  Search search;
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
-    const auto fluid_pair_sums = [&](std::uint32_t i, std::uint32_t j) {
-      return alone.sums_of_pair<Kernel, transport, false>(fluid, centre(fluid, i), j, UnitFactor{});
-    };
     for_each_row(grid, 0, grid.count(D - 1), [&](const Vec<D, int>& row) {
-      for_each_centre(grid, row, [&](std::uint32_t i, const auto& for_each_range_of_i) {
-        for_each_range_of_i([&](std::uint32_t first, std::uint32_t last) {
-          for (std::uint32_t j = first; i == traced && j < last; ++j)
-            keep({false, fluid.id[j], 0, fluid_pair_sums(i, j).centre});
-          if (first <= traced && traced < last) keep({false, fluid.id[i], 0, fluid_pair_sums(i, traced).other});
+      for_each_list(grid, row, search, [&](const PartnerLists<D>& lists) {
+        lists.for_each_partner([&](std::uint32_t i, std::uint32_t j) {
+          if (i != place && j != place) return;
+          const PairSums sums = sums_of_pair<Kernel, transport, false>(blocks_.centre(i), j, UnitFactor{});
+          keep({false, ids[i == place ? j : i], 0, i == place ? sums.centre : sums.other});
         });
       });
     });
-    for (const FrozenInStep<D>& fp : frozen)
-      for_each_range(grid, fp, [&](std::uint32_t first, std::uint32_t last) {
-        if (traced < first || last <= traced) return;
-        const PairCentre<D> centre_of_fp{fp.place.x, fp.place.v, fp.volume};
-        const NoSlipFactor<D> beta{model_, fp};
-        keep({true, fp.solid, fp.index,
-              alone.sums_of_pair<Kernel, transport, true>(fluid, centre_of_fp, traced, beta).other});
+    for (const auto& plane : frozen_by_plane(grid, frozen))
+      for_each_frozen_list(grid, frozen, plane, search, [&](const PartnerLists<D>& lists) {
+        lists.for_each_partner([&](std::uint32_t k, std::uint32_t j) {
+          const FrozenInStep<D>& fp = frozen[k];
+          if (j == place)
+            keep({true, fp.solid, fp.index,
+                  sums_of_pair<Kernel, transport, true>(centre(fp), place, NoSlipFactor<D>(model_, fp)).other});
+        });
       });
   });
   return partners;

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "parallel/lanes_loop.hpp"
+#include "parallel/near_rows.hpp"
 #include "particles/cell_grid.hpp"
+#include "particles/frozen.hpp"
 #include "particles/pair_trace.hpp"
 
 namespace mappm {
@@ -21,50 +23,47 @@ class FluidPass {
   void sum(FluidParticles<D>& fluid, const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
            std::vector<NeighbourSums<D>>& frozen_sums);
 
-  NeighbourSums<D> sums(std::size_t i) const;
+  /// Sums of PP i, which lies in this plane of cells.
+  NeighbourSums<D> sums(std::uint32_t i, int plane) const { return blocks_.sums(i + blocks_.gap(plane)); }
+  NeighbourSums<D> sums(std::uint32_t i) const { return blocks_.sums(blocks_.place(i)); }
 
   /// After `sum` and with its arguments: what each partner gave to the PP with this id that lies in the region, every
   /// pair of `sum` taken alone; none where there is no such PP. For an FP `id` is the index of its solid in the step.
   std::optional<std::vector<PartnerTrace<D>>> trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
-                                                    const std::vector<FrozenInStep<D>>& frozen,
-                                                    std::uint64_t particle) const;
+                                                    const std::vector<FrozenInStep<D>>& frozen, std::uint64_t particle);
 
  private:
-  /// A row of cells beside the row of a particle: how far it lies off, and how many cells along x are in reach.
-  struct RowOffset {
-    Vec<D, int> cell;
-    int reach;
+  /// What a thread searches with.
+  struct Search {
+    NearRows<D> near;
+    PartnerLists<D> lists;
   };
-  std::vector<RowOffset> rows_within_cutoff(const CellGrid<D>& grid, bool half) const;
-  void prepare(FluidParticles<D>& fluid);
-  PairFields<D> fields(const FluidParticles<D>& fluid);
   template <class Work>
   void for_each_row(const CellGrid<D>& grid, int first_plane, int last_plane, Work&& work) const;
   template <class Work>
-  void for_each_centre(const CellGrid<D>& grid, const Vec<D, int>& row, Work&& work) const;
-  template <class PairWith>
-  void for_each_range(const CellGrid<D>& grid, const FrozenInStep<D>& fp, PairWith&& pair_with) const;
-  PairCentre<D> centre(const FluidParticles<D>& fluid, std::size_t i) const;
+  void for_each_list(const CellGrid<D>& grid, const Vec<D, int>& row, Search& search, Work&& work);
+  template <class Work>
+  void for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
+                            std::span<const std::uint32_t> chosen, Search& search, Work&& work) const;
+  PairCentre<D> centre(const FrozenInStep<D>& fp) const;
   template <class Kernel, bool transport>
-  void sum_row(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const PairFields<D>& fields,
-               const Vec<D, int>& row);
+  void sum_row(const CellGrid<D>& grid, const Vec<D, int>& row, Search& search);
   template <class Kernel, bool transport>
-  void sum_frozen(const CellGrid<D>& grid, const PairFields<D>& fields, const FrozenInStep<D>& fp,
-                  NeighbourSums<D>& sums) const;
+  void sum_frozen(const std::vector<FrozenInStep<D>>& frozen, PartnerLists<D>& lists,
+                  std::vector<NeighbourSums<D>>& frozen_sums);
   struct PairSums {
     NeighbourSums<D> centre, other;
   };
   template <class Kernel, bool transport, bool lanes_first, class Beta>
-  PairSums sums_of_pair(const FluidParticles<D>& fluid, const PairCentre<D>& centre, std::uint32_t j, const Beta& beta);
+  PairSums sums_of_pair(const PairCentre<D>& centre, std::uint32_t place, const Beta& beta) const;
   template <class Work>
-  void for_each_band(const CellGrid<D>& grid, Work&& work) const;
+  void for_each_band(const CellGrid<D>& grid, Work&& work);
 
   const Model<D>& model_;
   int threads_;
-  std::vector<RowOffset> half_rows_, all_rows_;
-  std::vector<double> v2_, pv2_;
-  std::array<std::vector<std::int64_t>, D> impulse_, shift_;
-  std::vector<std::int64_t> density_;
+  std::vector<Vec<D, int>> half_rows_, all_rows_;
+  std::vector<Search> searches_;  // of the threads
+  PairBlocks<D> blocks_;
 };
 
 }  // namespace mappm

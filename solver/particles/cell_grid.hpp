@@ -14,38 +14,51 @@ namespace mappm {
 template <int D>
 class CellGrid {
  public:
-  /// Cells whose borders fall on those of the region; beyond it, `per_cutoff` layers of margin cells on each side.
-  /// length: of a position quantum in rcut, per axis.
-  void fit(const Region<D>& region, const Vec<D, double>& length, int per_cutoff) {
+  /// Cells whose borders fall on those of the region; beyond it, `per_cutoff` layers of margin cells on each side, on
+  /// each axis. length: of a position quantum in rcut, per axis.
+  void fit(const Region<D>& region, const Vec<D, double>& length, const Vec<D, int>& per_cutoff) {
     region_ = region;
     margin_ = per_cutoff;
     std::size_t cells = 1;
     for (int axis = 0; axis < D; ++axis) {
       const double quanta = region.high[axis] - region.low[axis];
       // A little wider than rcut / per_cutoff, so that rounding never hides a pair within the cutoff.
-      inner_[axis] = std::max(1, static_cast<int>(quanta * length[axis] * per_cutoff * (1.0 - 1e-6)));
+      inner_[axis] = std::max(1, static_cast<int>(quanta * length[axis] * per_cutoff[axis] * (1.0 - 1e-6)));
       scale_[axis] = inner_[axis] / quanta;
       width_[axis] = quanta * length[axis] / inner_[axis];
-      count_[axis] = inner_[axis] + 2 * margin_;
+      count_[axis] = inner_[axis] + 2 * margin_[axis];
       cells *= static_cast<std::size_t>(count_[axis]);
     }
     start_.assign(cells + 1, 0);
+  }
+
+  /// Place on one axis in cells from the start of the margin: where rounding does not matter, its floor is
+  /// `coordinate`.
+  template <class Real>
+  Real place(int axis, const Real& x) const {
+    return (x - region_.low[axis]) * scale_[axis] + static_cast<double>(margin_[axis]);
   }
 
   /// Cell coordinate on one axis, margin cells included; exact about which side of the region's border x lies on.
   int coordinate(int axis, double x) const {
     int cell = static_cast<int>(std::floor((x - region_.low[axis]) * scale_[axis]));
     cell = x < region_.high[axis] ? std::min(cell, inner_[axis] - 1) : std::max(cell, inner_[axis]);
-    return std::clamp(cell + margin_, 0, count_[axis] - 1);
+    return std::clamp(cell + margin_[axis], 0, count_[axis] - 1);
   }
   std::size_t row(const Vec<D, int>& cell) const {
     std::size_t flat = 0;
     for (int axis = D - 1; axis > 0; --axis) flat = flat * static_cast<std::size_t>(count_[axis]) + cell[axis];
     return flat * static_cast<std::size_t>(count_[0]);
   }
-  bool is_inner(int axis, int cell) const { return cell >= margin_ && cell < margin_ + inner_[axis]; }
+  bool is_inner(int axis, int cell) const { return cell >= margin_[axis] && cell < margin_[axis] + inner_[axis]; }
 
-  int margin() const { return margin_; }
+  std::size_t cell_count() const { return start_.size() - 1; }
+  /// First particle of a plane, the cells of one coordinate on the slowest axis, or the end of the last plane.
+  std::uint32_t plane_start(int coordinate) const {
+    return start_[cell_count() / static_cast<std::size_t>(count_[D - 1]) * static_cast<std::size_t>(coordinate)];
+  }
+
+  int margin(int axis) const { return margin_[axis]; }
   int count(int axis) const { return count_[axis]; }
   int inner(int axis) const { return inner_[axis]; }
   double width(int axis) const { return width_[axis]; }
@@ -73,8 +86,8 @@ class CellGrid {
   }
 
  private:
-  template <class T>
-  void permute(std::vector<T>& values, std::vector<T>& scratch) const {
+  template <class Values>
+  void permute(Values& values, Values& scratch) const {
     reserve_tightly(scratch, values.size());
     scratch.resize(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) scratch[target_[i]] = values[i];
@@ -82,11 +95,10 @@ class CellGrid {
   }
 
   Region<D> region_;
-  int margin_ = 1;
-  Vec<D, int> inner_, count_;
+  Vec<D, int> margin_, inner_, count_;
   Vec<D, double> scale_, width_;
   std::vector<std::uint32_t> start_, target_;
-  std::vector<double> scratch_;
+  Column<double> scratch_;
   std::vector<std::uint64_t> scratch_id_;
 };
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/column.hpp"
 #include "base/digest.hpp"
 #include "base/fixed_point.hpp"
 #include "base/vec.hpp"
@@ -15,8 +16,8 @@ namespace mappm {
 
 /// Makes room for `count` values, a tenth more than needed: the doubling of a vector would cost more memory than all
 /// other arrays of a step.
-template <class T>
-void reserve_tightly(std::vector<T>& values, std::size_t count) {
+template <class Values>
+void reserve_tightly(Values& values, std::size_t count) {
   if (count > values.capacity()) values.reserve(count + count / 10);
 }
 
@@ -27,14 +28,14 @@ template <int D>
 struct FluidParticles {
   static constexpr int field_count = 2 * D + 1;
   std::vector<std::uint64_t> id;
-  std::array<std::vector<double>, field_count> field;
+  std::array<Column<double>, field_count> field;
 
-  std::vector<double>& x(int axis) { return field[axis]; }
-  const std::vector<double>& x(int axis) const { return field[axis]; }
-  std::vector<double>& v(int axis) { return field[D + axis]; }
-  const std::vector<double>& v(int axis) const { return field[D + axis]; }
-  std::vector<double>& density() { return field[2 * D]; }
-  const std::vector<double>& density() const { return field[2 * D]; }
+  Column<double>& x(int axis) { return field[axis]; }
+  const Column<double>& x(int axis) const { return field[axis]; }
+  Column<double>& v(int axis) { return field[D + axis]; }
+  const Column<double>& v(int axis) const { return field[D + axis]; }
+  Column<double>& density() { return field[2 * D]; }
+  const Column<double>& density() const { return field[2 * D]; }
 
   std::size_t size() const { return id.size(); }
   void resize(std::size_t count) {
@@ -48,7 +49,7 @@ struct FluidParticles {
   /// Frees all memory.
   void release() {
     std::vector<std::uint64_t>().swap(id);
-    for (auto& values : field) std::vector<double>().swap(values);
+    for (auto& values : field) Column<double>().swap(values);
   }
 };
 

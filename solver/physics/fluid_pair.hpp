@@ -47,10 +47,10 @@ MAPPM_INLINE Vec<D, Real> separation(const PairLaw<D>& law, const Vec<D, Real>& 
   return r;
 }
 
-/// Distance in units of rcut, cut at 1: beyond the cutoff every profile is zero, so no branch is needed.
-template <int D, class Real>
-MAPPM_INLINE Real cut_distance(const Vec<D, Real>& r) {
-  return smaller(square_root(dot(r, r)), Real(1.0));
+/// Distance in units of rcut from its square, cut at 1: beyond the cutoff every profile is zero, so no branch is needed.
+template <class Real>
+MAPPM_INLINE Real cut_distance(const Real& square) {
+  return smaller(square_root(square), Real(1.0));
 }
 
 /// `beta` is 1 between PPs and `no_slip_factor` between a PP and an FP.

@@ -124,7 +124,7 @@ void SerialEngine<D>::for_each_fluid_partner(std::size_t i, Visit&& visit) const
     const FluidPair<D, double> pair{nearest_vector(x, position(state_.fluid, j)), v - velocity(state_.fluid, j),
                                     volume_[i].v2 + volume_[j].v2, volume_[i].pv2 + volume_[j].pv2};
     const Vec<D, double> r = separation(model_.pair, pair.d);
-    visit(j, fluid_pair<Kernel, transport>(model_.pair, pair, r, cut_distance(r), 1.0));
+    visit(j, fluid_pair<Kernel, transport>(model_.pair, pair, r, cut_distance(dot(r, r)), 1.0));
   });
 }
 
@@ -141,7 +141,7 @@ void SerialEngine<D>::for_each_frozen_partner(std::size_t i, Visit&& visit) cons
     const Vec<D, double> r = separation(model_.pair, pair.d);
     const double beta =
         model_.terms.extrapolated ? no_slip_factor(r, fp.place.normal, fp.depth, model_.no_slip_nearest) : 1.0;
-    visit(k, fluid_pair<Kernel, transport>(model_.pair, pair, r, cut_distance(r), beta));
+    visit(k, fluid_pair<Kernel, transport>(model_.pair, pair, r, cut_distance(dot(r, r)), beta));
   });
 }
 
@@ -203,7 +203,7 @@ void SerialEngine<D>::sum_frozen_densities() {
       const FrozenInStep<D>& other = frozen_[static_cast<std::size_t>(neighbour)];
       if (state_.solids[fp.solid].group == state_.solids[other.solid].group) return;
       const Vec<D, double> r = separation(model_.pair, nearest_vector(fp.place.x, other.place.x));
-      frozen_sums_[k].density += pair_density<Kernel>(model_.pair, r, fp.place.v - other.place.v, cut_distance(r));
+      frozen_sums_[k].density += pair_density<Kernel>(model_.pair, r, fp.place.v - other.place.v, cut_distance(dot(r, r)));
     });
   }
 }

@@ -1,9 +1,12 @@
-// Oracle: the same pass over memory that holds nothing else.
+// Oracles: the pair law between all pairs, and the same pass over memory that holds nothing else.
 #include "parallel/fluid_pass.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <random>
+#include <string>
 
 #include "unit/serial/scenes.hpp"
 
@@ -33,7 +36,7 @@ std::vector<NeighbourSums<2>> sums_over(const Model<2>& model, FluidParticles<2>
     values.resize(count);
   }
   CellGrid<2> grid;
-  grid.fit(Region<2>::whole_box(), model.pair.length, 3);
+  grid.fit(Region<2>::whole_box(), model.pair.length, {{8, 2}});
   grid.sort(fluid);
   for (auto& values : fluid.field) {  // sorting swapped the arrays
     const std::size_t count = values.size();
@@ -43,7 +46,7 @@ std::vector<NeighbourSums<2>> sums_over(const Model<2>& model, FluidParticles<2>
   FluidPass<2> pass(model, 1);
   std::vector<NeighbourSums<2>> frozen_sums, result;
   pass.sum(fluid, grid, {}, frozen_sums);
-  for (std::size_t i = 0; i < fluid.size(); ++i) result.push_back(pass.sums(i));
+  for (std::uint32_t i = 0; i < fluid.size(); ++i) result.push_back(pass.sums(i));
   return result;
 }
 
@@ -58,6 +61,84 @@ TEST(FluidPass, does_not_see_what_lies_behind_the_last_particle) {
     EXPECT_EQ(clean[i].shift, dirty[i].shift) << "particle " << i;
     EXPECT_EQ(clean[i].density, dirty[i].density) << "particle " << i;
   }
+}
+
+/// Particles at random all over the box, every fifth of them in a heap narrower than the cutoff: rows that hold many
+/// blocks of lanes, and planes that hold few particles.
+template <int D>
+FluidParticles<D> heap(const Model<D>& model, std::size_t count) {
+  std::mt19937_64 random(5);
+  FluidParticles<D> fluid;
+  fluid.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    fluid.id[i] = i;
+    for (int axis = 0; axis < D; ++axis) {
+      std::uniform_real_distribution<double> anywhere(0.0, box_quanta), in_heap(0.5, 0.5 + 0.3 / model.box[axis]);
+      fluid.x(axis)[i] = std::floor(i % 5 == 0 ? box_quanta * in_heap(random) : anywhere(random));
+      fluid.v(axis)[i] = static_cast<double>(random() % 1000) * velocity_quantum * 1e9;
+    }
+    fluid.density()[i] = model.rest_density * (0.9 + 0.2 * static_cast<double>(random() % 1000) / 1000.0);
+  }
+  return fluid;
+}
+
+/// The pass over a region inside the box, around which the other particles stand for ghosts, against all pairs.
+template <int D>
+void expect_sums_of_all_pairs(const char* scene, int along, int across, int threads) {
+  SCOPED_TRACE(::testing::Message() << D << "D, cells " << along << " x " << across << ", threads " << threads);
+  const testing::Built<D> built(scene);
+  const Model<D>& model = built.model;
+  FluidParticles<D> fluid = heap(model, 1500);
+  Region<D> region;
+  Vec<D, int> cells;
+  for (int axis = 0; axis < D; ++axis) {
+    region.low[axis] = std::ceil(1.1 / model.pair.length[axis]);
+    region.high[axis] = box_quanta - region.low[axis];
+    cells[axis] = axis == 0 ? along : across;
+  }
+  CellGrid<D> grid;
+  grid.fit(region, model.pair.length, cells);
+  grid.sort(fluid);
+  FluidPass<D> pass(model, threads);
+  std::vector<NeighbourSums<D>> frozen_sums;
+  pass.sum(fluid, grid, {}, frozen_sums);
+  const auto place = [&](std::size_t i) {
+    Vec<D, double> x;
+    for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];
+    return x;
+  };
+  std::size_t pairs = 0;
+  for (std::uint32_t i = 0; i < fluid.size(); ++i) {
+    if (!region.contains(place(i))) continue;
+    NeighbourSums<D> sums{};
+    const auto own = volume_terms(fluid.density()[i], model.rest_density, 1.0, model.background);
+    for (std::size_t j = 0; j < fluid.size(); ++j) {
+      if (j == i) continue;
+      const auto other = volume_terms(fluid.density()[j], model.rest_density, 1.0, model.background);
+      FluidPair<D, double> pair{place(i) - place(j), {}, own.v2 + other.v2, own.pv2 + other.pv2};
+      for (int axis = 0; axis < D; ++axis) pair.v[axis] = fluid.v(axis)[i] - fluid.v(axis)[j];
+      const Vec<D, double> r = separation(model.pair, pair.d);
+      const auto given = fluid_pair<WendlandC2, true>(model.pair, pair, r, cut_distance(dot(r, r)), 1.0);
+      sums.impulse += given.impulse;
+      sums.shift += given.shift;
+      sums.density += given.density;
+      if (dot(r, r) < 1.0) ++pairs;
+    }
+    ASSERT_EQ(pass.sums(i).impulse, sums.impulse) << "particle " << i;
+    ASSERT_EQ(pass.sums(i).shift, sums.shift) << "particle " << i;
+    ASSERT_EQ(pass.sums(i).density, sums.density) << "particle " << i;
+  }
+  EXPECT_GT(pairs, 10000u);
+}
+
+TEST(FluidPass, sums_over_all_pairs) {
+  const std::string deep = std::string(swirl).replace(std::string(swirl).find("[4.0, 5.0]"), 10, "[4.0, 5.0, 6.0]");
+  for (const int threads : {1, 3})
+    for (const int across : {1, 2, 3})
+      for (const int along : {1, 8}) {
+        expect_sums_of_all_pairs<2>(swirl, along, across, threads);
+        expect_sums_of_all_pairs<3>(deep.c_str(), along, across, threads);
+      }
 }
 
 }  // namespace

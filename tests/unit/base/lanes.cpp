@@ -28,20 +28,21 @@ TEST(Lanes, elementary_functions_are_those_of_double) {
   }
 }
 
-TEST(Lanes, first_lanes_replaces_the_rest) {
-  const auto a = ramp(1.0, 1.0);
-  for (int count = 0; count <= lane_count; ++count) {
-    const Lanes kept = first_lanes(count, load_lanes(a.data()), -9.0);
-    for (int lane = 0; lane < lane_count; ++lane) EXPECT_EQ(kept[lane], lane < count ? a[lane] : -9.0);
+TEST(Lanes, numbers_and_whole_parts) {
+  std::array<std::int32_t, lane_count> whole;
+  whole_numbers(lane_numbers() * 2.75 - 0.5, whole.data());
+  for (int lane = 0; lane < lane_count; ++lane) {
+    EXPECT_EQ(lane_numbers()[lane], lane);
+    EXPECT_EQ(whole[lane], static_cast<int>(lane * 2.75 - 0.5));
   }
 }
 
-TEST(Lanes, store_first_lanes_leaves_the_rest_of_memory_alone) {
-  for (int count = 0; count <= lane_count; ++count) {
-    std::array<std::int64_t, lane_count> memory;
-    memory.fill(77);
-    store_first_lanes(count, IntLanes(5), memory.data());
-    for (int lane = 0; lane < lane_count; ++lane) EXPECT_EQ(memory[lane], lane < count ? 5 : 77);
+TEST(Lanes, any_below_looks_at_every_lane) {
+  EXPECT_FALSE(any_below(Lanes(1.0), 1.0));
+  for (int lane = 0; lane < lane_count; ++lane) {
+    Lanes lanes = 1.0;
+    lanes[lane] = 0.99;
+    EXPECT_TRUE(any_below(lanes, 1.0));
   }
 }
 

@@ -11,6 +11,14 @@
 namespace mappm {
 namespace {
 
+template <int D>
+Vec<D, int> cells_per_cutoff(int along, int across) {
+  Vec<D, int> cells;
+  cells[0] = along;
+  for (int axis = 1; axis < D; ++axis) cells[axis] = across;
+  return cells;
+}
+
 /// A region inside the box whose borders are no round numbers.
 template <int D>
 struct Place {
@@ -68,7 +76,7 @@ void expect_all_pairs_in_reach(double side, int per_cutoff) {
   SCOPED_TRACE(::testing::Message() << D << "D, side " << side << ", cells to a cutoff " << per_cutoff);
   const Place<D> place(side);
   CellGrid<D> grid;
-  grid.fit(place.region, place.length, per_cutoff);
+  grid.fit(place.region, place.length, cells_per_cutoff<D>(per_cutoff + 2, per_cutoff));
   const FluidParticles<D> fluid = scatter(place, 700);
   int pairs = 0;
   for (std::size_t i = 0; i < fluid.size(); ++i) {
@@ -84,7 +92,7 @@ void expect_all_pairs_in_reach(double side, int per_cutoff) {
       ++pairs;
       for (int axis = 0; axis < D; ++axis) {
         const int apart = std::abs(grid.coordinate(axis, fluid.x(axis)[i]) - grid.coordinate(axis, fluid.x(axis)[j]));
-        ASSERT_LE(apart, grid.margin());
+        ASSERT_LE(apart, grid.margin(axis));
         // Cells that lie `apart` leave apart - 1 whole cells between; the rounding of a cell coordinate is 1e-15.
         ASSERT_LE((apart - 1) * grid.width(axis), distance[axis] + 1e-12);
       }
@@ -104,15 +112,15 @@ TEST(CellGrid, every_pair_within_the_cutoff_of_an_owned_particle_is_in_reach) {
 template <int D>
 void expect_exact_ownership(const Place<D>& place, int per_cutoff) {
   CellGrid<D> grid;
-  grid.fit(place.region, place.length, per_cutoff);
+  grid.fit(place.region, place.length, cells_per_cutoff<D>(per_cutoff + 2, per_cutoff));
   for (int axis = 0; axis < D; ++axis) {
     const double low = place.region.low[axis], high = place.region.high[axis];
     EXPECT_FALSE(grid.is_inner(axis, grid.coordinate(axis, low - 1.0)));
     EXPECT_TRUE(grid.is_inner(axis, grid.coordinate(axis, low)));
     EXPECT_TRUE(grid.is_inner(axis, grid.coordinate(axis, high - 1.0)));
     EXPECT_FALSE(grid.is_inner(axis, grid.coordinate(axis, high)));
-    EXPECT_EQ(grid.coordinate(axis, low), per_cutoff);
-    EXPECT_EQ(grid.coordinate(axis, high - 1.0), per_cutoff + grid.inner(axis) - 1);
+    EXPECT_EQ(grid.coordinate(axis, low), grid.margin(axis));
+    EXPECT_EQ(grid.coordinate(axis, high - 1.0), grid.margin(axis) + grid.inner(axis) - 1);
   }
   const FluidParticles<D> fluid = scatter(place, 3000);
   for (std::size_t i = 0; i < fluid.size(); ++i)
@@ -130,7 +138,7 @@ TEST(CellGrid, ownership_by_cell_is_exact_at_the_borders) {
 TEST(CellGrid, cells_by_hand) {
   // A box of 6 x 4 rcut as one region, three cells to a cutoff: a hair wider than 1/3, so 17 and 11 inner cells.
   CellGrid<2> grid;
-  grid.fit(Region<2>::whole_box(), {{6.0 / box_quanta, 4.0 / box_quanta}}, 3);
+  grid.fit(Region<2>::whole_box(), {{6.0 / box_quanta, 4.0 / box_quanta}}, cells_per_cutoff<2>(3, 3));
   EXPECT_EQ(grid.inner(0), 17);
   EXPECT_EQ(grid.inner(1), 11);
   EXPECT_EQ(grid.count(0), 23);
@@ -147,7 +155,7 @@ template <int D>
 void expect_sorted_permutation() {
   const Place<D> place(2.6);
   CellGrid<D> grid;
-  grid.fit(place.region, place.length, 3);
+  grid.fit(place.region, place.length, cells_per_cutoff<D>(3, 3));
   const FluidParticles<D> before = scatter(place, 2000);
   FluidParticles<D> after = before;
   grid.sort(after);
@@ -186,7 +194,7 @@ TEST(CellGrid, sort_is_a_permutation_into_cell_order) {
 TEST(CellGrid, sorts_nothing_and_sorts_again) {
   const Place<2> place(2.0);
   CellGrid<2> grid;
-  grid.fit(place.region, place.length, 2);
+  grid.fit(place.region, place.length, cells_per_cutoff<2>(2, 2));
   FluidParticles<2> none;
   grid.sort(none);
   EXPECT_EQ(grid.start(static_cast<std::size_t>(grid.count(0) * grid.count(1))), 0u);

@@ -180,7 +180,7 @@ void expect_lanes_like_double(const Fluid<D>& fluid, double rho0) {
     }
     const auto lanes = interact<Kernel, transport>(law, wide, beta);
     const Vec<D, Lanes> r = separation(law, wide.d);
-    const IntLanes shared = pair_density<Kernel>(law, r, wide.v, cut_distance(r));
+    const IntLanes shared = pair_density<Kernel>(law, r, wide.v, cut_distance(dot(r, r)));
     for (int lane = 0; lane < lane_count; ++lane) {
       const auto one = interact<Kernel, transport>(law, pairs[lane], 1.0 + 0.25 * lane);
       for (int axis = 0; axis < D; ++axis) {

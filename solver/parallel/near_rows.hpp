@@ -1,0 +1,107 @@
+// The search of the fast engine. A row is a line of cells along x, in which particles are ordered by x; the partners of
+// a particle are a range in each row nearby, as long as the chord that the row cuts from the sphere of the cutoff.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/lanes.hpp"
+#include "parallel/pair_blocks.hpp"
+
+namespace mappm {
+
+/// How far rows of cells lie from another, in cells across, that a pair can join; the own row first. `half`: of the
+/// others only those that come later in memory.
+template <int D>
+std::vector<Vec<D, int>> row_offsets(const CellGrid<D>& grid, bool half) {
+  std::vector<Vec<D, int>> offsets{Vec<D, int>{}};
+  const int slow = D == 3 ? grid.margin(D - 1) : 0;
+  for (int dz = half ? 0 : -slow; dz <= slow; ++dz)
+    for (int dy = half && dz == 0 ? 1 : -grid.margin(1); dy <= grid.margin(1); ++dy) {
+      Vec<D, int> offset{};
+      offset[1] = dy;
+      if constexpr (D == 3) offset[2] = dz;
+      double square = 0.0;
+      for (int axis = 1; axis < D; ++axis) {
+        const double gap = std::max(0, std::abs(offset[axis]) - 1) * grid.width(axis);
+        square += gap * gap;
+      }
+      if (square < 1.0 && (dy != 0 || dz != 0)) offsets.push_back(offset);
+    }
+  return offsets;
+}
+
+/// The rows near one row, and in them the ranges of particles near some places in the row, a lane each.
+template <int D>
+class NearRows {
+ public:
+  /// The rows at `offsets` from `row` that lie in the grid; `inner`: only those, and of them the cells, in the region.
+  /// Ranges are given in places of `blocks`.
+  void fit(const CellGrid<D>& grid, const PairBlocks<D>& blocks, const std::vector<Vec<D, int>>& offsets,
+           const Vec<D, int>& row, bool inner) {
+    row_ = row;
+    lowest_ = inner ? grid.margin(0) : 0;
+    highest_ = inner ? grid.margin(0) + grid.inner(0) - 1 : grid.count(0) - 1;
+    rows_.clear();
+    for (const Vec<D, int>& offset : offsets) {
+      const Vec<D, int> other = row + offset;
+      bool chosen = true;
+      for (int axis = 1; axis < D; ++axis)
+        chosen =
+            chosen && (inner ? grid.is_inner(axis, other[axis]) : other[axis] >= 0 && other[axis] < grid.count(axis));
+      if (chosen) rows_.push_back({grid.row(other), blocks.gap(other[D - 1]), offset});
+    }
+    low_.resize(rows_.size() * lane_count);
+    high_.resize(rows_.size() * lane_count);
+  }
+
+  std::size_t count() const { return rows_.size(); }
+
+  /// For places in the row.
+  MAPPM_INLINE void find(const CellGrid<D>& grid, const Vec<D, Lanes>& x) {
+    const Lanes place = grid.place(0, x[0]);
+    const double cells_per_cutoff = 1.0 / grid.width(0);
+    Vec<D, Lanes> inside;  // of the row, from its lower borders, rcut
+    for (int axis = 1; axis < D; ++axis)
+      inside[axis] = (grid.place(axis, x[axis]) - static_cast<double>(row_[axis])) * grid.width(axis);
+    for (std::size_t n = 0; n < rows_.size(); ++n) {
+      Lanes left = 1.0 + rounding;  // square of half the chord, rcut
+      for (int axis = 1; axis < D; ++axis) {
+        const double border = rows_[n].offset[axis] * grid.width(axis);
+        const Lanes beside =
+            larger(larger(border - inside[axis], inside[axis] - (border + grid.width(axis))), Lanes(0.0));
+        left -= beside * beside;
+      }
+      const Lanes chord = square_root(larger(left, Lanes(0.0))) * cells_per_cutoff + rounding;
+      const Lanes half = smaller(chord, larger(left * 1e300, Lanes(-1.0)));  // without a chord -1: an empty range
+      whole_numbers(larger(place - half, Lanes(lowest_)), &low_[n * lane_count]);
+      whole_numbers(smaller(place + half, Lanes(highest_)), &high_[n * lane_count]);
+    }
+  }
+
+  /// Places [first, end) of a row that hold all those within the cutoff of the place of a lane, and others. There may
+  /// be none, with end <= first.
+  struct Range {
+    std::uint32_t first, end;
+  };
+  MAPPM_INLINE Range range(const CellGrid<D>& grid, std::size_t row, std::size_t lane) const {
+    const std::size_t cells = rows_[row].cells, n = row * lane_count + lane;
+    return {grid.start(cells + static_cast<std::size_t>(low_[n])) + rows_[row].gap,
+            grid.start(cells + static_cast<std::size_t>(high_[n]) + 1) + rows_[row].gap};
+  }
+
+ private:
+  static constexpr double rounding = 1e-6;  // far more than that of a place, in cells and in rcut
+  struct Row {
+    std::size_t cells;  // its first one
+    std::uint32_t gap;
+    Vec<D, int> offset;
+  };
+  Vec<D, int> row_;
+  double lowest_ = 0.0, highest_ = 0.0;
+  std::vector<Row> rows_;
+  std::vector<std::int32_t> low_, high_;  // cells along x, `lane_count` a row
+};
+
+}  // namespace mappm

@@ -1,0 +1,132 @@
+// The PPs as the pair pass sees them: blocks of lanes with all that a pair reads and writes, side by side in memory.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "base/column.hpp"
+#include "particles/cell_grid.hpp"
+#include "particles/model.hpp"
+#include "physics/pseudo_particle.hpp"
+#include "physics/state_equation.hpp"
+
+namespace mappm {
+
+template <int D>
+struct alignas(sizeof(Lanes)) PairBlock {
+  double x[D][lane_count], v[D][lane_count];
+  double v2[lane_count], pv2[lane_count];
+  std::int64_t impulse[D][lane_count], shift[D][lane_count], density[lane_count];
+};
+
+/// The one particle of a loop over blocks: a PP or an FP.
+template <int D>
+struct PairCentre {
+  Vec<D, double> x, v;
+  VolumeTerms<double> volume;
+};
+
+/// All PPs in the order of a grid. Each plane of cells begins a block, so no two planes share one: a place is the index
+/// of a PP in that order and the gaps before it.
+template <int D>
+class PairBlocks {
+ public:
+  /// Sums are set to zero. `fluid` is in the order of `grid`.
+  void fill(const Model<D>& model, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
+    for (auto& values : fluid.field) {
+      // Whole lanes are read behind the last particle. They are no partners, but 0 times NaN would not be 0.
+      const std::size_t count = values.size();
+      reserve_tightly(values, count + lane_count);
+      values.resize(count + lane_count, 1.0);
+      values.resize(count);
+    }
+    const int planes = grid.count(D - 1);
+    gaps_.resize(static_cast<std::size_t>(planes));
+    starts_.resize(static_cast<std::size_t>(planes));
+    std::uint32_t place = 0;
+    for (int plane = 0; plane < planes; ++plane) {
+      const std::uint32_t first = grid.plane_start(plane), end = grid.plane_start(plane + 1);
+      starts_[static_cast<std::size_t>(plane)] = first;
+      gaps_[static_cast<std::size_t>(plane)] = place - first;
+      place += (end - first + lane_count - 1) / lane_count * lane_count;
+    }
+    reserve_tightly(blocks_, place / lane_count);
+    blocks_.resize(place / lane_count);
+    for (int plane = 0; plane < planes; ++plane)
+      for (std::uint32_t i = grid.plane_start(plane); i < grid.plane_start(plane + 1); i += lane_count)
+        fill_block(model, fluid, i, blocks_[(i + gap(plane)) / lane_count]);
+  }
+
+  PairBlock<D>* data() { return blocks_.data(); }
+  std::size_t place_count() const { return blocks_.size() * lane_count; }
+  /// The block of a place alone, with sums of zero.
+  PairBlocks one(std::uint32_t place) const {
+    PairBlocks result;
+    result.blocks_.push_back(blocks_[place / lane_count]);
+    clear(result.blocks_.front());
+    return result;
+  }
+  /// Place of a PP of a plane less its index.
+  std::uint32_t gap(int plane) const { return gaps_[static_cast<std::size_t>(plane)]; }
+  std::uint32_t place(std::uint32_t index) const {
+    const auto plane = std::upper_bound(starts_.begin(), starts_.end(), index) - starts_.begin() - 1;
+    return index + gap(static_cast<int>(plane));
+  }
+
+  MAPPM_INLINE PairCentre<D> centre(std::uint32_t place) const {
+    const PairBlock<D>& block = blocks_[place / lane_count];
+    const std::uint32_t lane = place % lane_count;
+    PairCentre<D> centre;
+    for (int axis = 0; axis < D; ++axis) {
+      centre.x[axis] = block.x[axis][lane];
+      centre.v[axis] = block.v[axis][lane];
+    }
+    centre.volume = {block.v2[lane], block.pv2[lane]};
+    return centre;
+  }
+  MAPPM_INLINE void add(std::uint32_t place, const NeighbourSums<D>& sums) {
+    PairBlock<D>& block = blocks_[place / lane_count];
+    const std::uint32_t lane = place % lane_count;
+    for (int axis = 0; axis < D; ++axis) {
+      block.impulse[axis][lane] += sums.impulse[axis];
+      block.shift[axis][lane] += sums.shift[axis];
+    }
+    block.density[lane] += sums.density;
+  }
+  NeighbourSums<D> sums(std::uint32_t place) const {
+    const PairBlock<D>& block = blocks_[place / lane_count];
+    const std::uint32_t lane = place % lane_count;
+    NeighbourSums<D> sums;
+    for (int axis = 0; axis < D; ++axis) {
+      sums.impulse[axis] = block.impulse[axis][lane];
+      sums.shift[axis] = block.shift[axis][lane];
+    }
+    sums.density = block.density[lane];
+    return sums;
+  }
+
+ private:
+  static void fill_block(const Model<D>& model, const FluidParticles<D>& fluid, std::size_t i, PairBlock<D>& block) {
+    for (int axis = 0; axis < D; ++axis) {
+      store_lanes(load_lanes(&fluid.x(axis)[i]), block.x[axis]);
+      store_lanes(load_lanes(&fluid.v(axis)[i]), block.v[axis]);
+    }
+    const auto volume = volume_terms(load_lanes(&fluid.density()[i]), model.rest_density, 1.0, model.background);
+    store_lanes(volume.v2, block.v2);
+    store_lanes(volume.pv2, block.pv2);
+    clear(block);
+  }
+  static void clear(PairBlock<D>& block) {
+    for (int axis = 0; axis < D; ++axis) {
+      store_lanes(IntLanes(0), block.impulse[axis]);
+      store_lanes(IntLanes(0), block.shift[axis]);
+    }
+    store_lanes(IntLanes(0), block.density);
+  }
+
+  std::vector<std::uint32_t> starts_, gaps_;  // of each plane: its first index; its places less its indices
+  Column<PairBlock<D>> blocks_;
+};
+
+}  // namespace mappm
