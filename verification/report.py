@@ -12,6 +12,7 @@ from pathlib import Path
 
 from verification.case import Case
 from verification.chapters import chapters_of, families_of, rows_of
+from verification.charts import speeds
 from verification.figures import CaseFigures, case_figures, family_figures, shown_figures, suite_figures
 from verification.history import changes, errors_of, read_history
 from verification.judge import CORRECT, SKIPPED
@@ -27,7 +28,7 @@ from verification.stored import FULL, FULL_CHARTS, PUBLISHED
 
 SHOWN = "gas_solid_small"
 STEPS = {"quick": 8_000, "full": 60_000}  # of the long run
-STORED = {"full": FULL.name, "mutation": "mutation.json", "robustness": "robustness.json"}  # made by commands of their own
+STORED = {"full": FULL.name, "speed": "speed.json", "mutation": "mutation.json", "robustness": "robustness.json"}  # made by commands of their own
 
 
 def _cases(tier: str) -> list[Case]:
@@ -128,12 +129,15 @@ def write_report(tier: str, out: Path, publish: bool) -> int:
         rows = rows_of(families)
         suite = suite_figures([(row.name, row.outcome) for row in rows], [*history, entry], out)
         shown_pictures = shown_figures(shown, out)
+        stored = _stored()
+        if "speed" in stored:
+            speeds(stored["speed"]["data"]["figures"], out / "speed.svg")
     with progress.stage("page"):
         origin |= {chapter.code: chapter.version for chapter in chapters}
         content = {
             "tier": tier, "results": results, "figures": figures, "families": families, "chapters": chapters,
             "rows": rows, "suite": suite, "shown_pictures": shown_pictures,
-            "shown": SHOWN, "steps": STEPS[tier], "record": shown.record, "ledger": _ledger(shown), "stored": _stored(),
+            "shown": SHOWN, "steps": STEPS[tier], "record": shown.record, "ledger": _ledger(shown), "stored": stored, "speed_chart": out / "speed.svg",
             "full_charts": sorted(FULL_CHARTS.glob("*.svg")),
             "changes": changes(history, entry["errors"]), "history": history, "provenance": origin,
             "checksums": reference_checksums(), "took": str(timedelta(seconds=round(time.monotonic() - started))),
