@@ -249,6 +249,14 @@ void ParallelEngine<D>::move_solids(const std::vector<HomeReport<D>>& from_other
   }
 }
 
+/// Keeps the first fault of PP i as the error of the run.
+template <int D>
+[[gnu::noinline]] void ParallelEngine<D>::report(RangeFault fault, std::uint32_t i, const Vec<D, double>& v,
+                                                 const NeighbourSums<D>& sums) {
+#pragma omp critical
+  if (range_error_.empty()) range_error_ = range_message(fault, state_.step, state_.fluid.id[i], v, sums);
+}
+
 /// Moves the owned PPs, which fill the inner cells, and drops the ghosts.
 template <int D>
 void ParallelEngine<D>::move_fluid() {
@@ -289,10 +297,8 @@ void ParallelEngine<D>::move_fluid() {
           for (int axis = 0; axis < D; ++axis) given[n][axis] += impulse[axis];
         }
         const RangeFault fault = advance(x, v, fluid.density()[i], sums, constants);
-        if (fault != RangeFault::none) {
-#pragma omp critical
-          if (range_error_.empty()) range_error_ = range_message(fault, state_.step, fluid.id[i], v, sums);
-        }
+        if (fault != RangeFault::none) [[unlikely]]
+          report(fault, i, v, sums);
         for (int axis = 0; axis < D; ++axis) {
           fluid.x(axis)[i] = wrap_position(x[axis]);
           fluid.v(axis)[i] = v[axis];

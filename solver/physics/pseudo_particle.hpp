@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "base/fixed_point.hpp"
+#include "base/lanes.hpp"
 #include "base/vec.hpp"
 #include "physics/range_fault.hpp"
 
@@ -31,7 +32,7 @@ struct ParticleStep {
 /// v += impulse + kick, x += v dt + shift, density = sum: exact but for the rounding of v dt to a quantum. The position
 /// is not wrapped. On a fault nothing is changed.
 template <int D>
-RangeFault advance(Vec<D, double>& x, Vec<D, double>& v, double& density, const NeighbourSums<D>& sums,
+MAPPM_INLINE RangeFault advance(Vec<D, double>& x, Vec<D, double>& v, double& density, const NeighbourSums<D>& sums,
                    const ParticleStep<D>& step) {
   constexpr std::int64_t largest_impulse = std::int64_t{1} << 50;
   Vec<D, double> new_x, new_v;
