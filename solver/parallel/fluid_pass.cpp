@@ -121,7 +121,8 @@ template <class Work>
 void FluidPass<D>::for_each_list(const CellGrid<D>& grid, const Vec<D, int>& row, Search& search, Work&& work) {
   bool inner_row = true;
   for (int axis = 1; axis < D; ++axis) inner_row = inner_row && grid.is_inner(axis, row[axis]);
-  auto& [near, lists] = search;
+  NearRows<D>& near = search.near;
+  PartnerLists<D>& lists = search.lists;
   const auto run = [&](int begin_cell, int end_cell, bool ghost) {
     const std::size_t cells = grid.row(row);
     const std::uint32_t gap = blocks_.gap(row[D - 1]);
@@ -169,7 +170,8 @@ template <int D>
 template <class Work>
 void FluidPass<D>::for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
                                         std::span<const std::uint32_t> chosen, Search& search, Work&& work) const {
-  auto& [near, lists] = search;
+  NearRows<D>& near = search.near;
+  PartnerLists<D>& lists = search.lists;
   const auto row_of = [&](std::size_t n) {
     Vec<D, int> row;
     for (int axis = 1; axis < D; ++axis) row[axis] = grid.coordinate(axis, frozen[chosen[n]].place.x[axis]);

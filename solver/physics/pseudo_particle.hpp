@@ -33,7 +33,7 @@ struct ParticleStep {
 /// is not wrapped. On a fault nothing is changed.
 template <int D>
 MAPPM_INLINE RangeFault advance(Vec<D, double>& x, Vec<D, double>& v, double& density, const NeighbourSums<D>& sums,
-                   const ParticleStep<D>& step) {
+                                const ParticleStep<D>& step) {
   constexpr std::int64_t largest_impulse = std::int64_t{1} << 50;
   Vec<D, double> new_x, new_v;
   for (int axis = 0; axis < D; ++axis) {
