@@ -57,7 +57,7 @@ void reset_peak() {
 template <int D>
 double table_bytes() {
   constexpr double state = 8.0 * (1 + FluidParticles<D>::field_count);  // id and fields
-  constexpr double pass = 8.0 * (2 + 2 * D + 1);                        // V^2, p V^2; impulse, shift, density
+  constexpr double pass = sizeof(PairBlock<D>) / lane_count;            // of the blocks of the pair pass
   constexpr double sort = 4.0 + 8.0 + 8.0;                              // target, one field, ids
   return state + pass + sort;
 }

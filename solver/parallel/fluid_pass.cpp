@@ -3,7 +3,6 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "physics/wall.hpp"
 
@@ -104,6 +103,7 @@ void FluidPass<D>::sum(FluidParticles<D>& fluid, const CellGrid<D>& grid, const 
       for_each_row(grid, first, last, [&](const Vec<D, int>& row) { sum_row<Kernel, transport>(grid, row, search); });
     });
     frozen_sums.assign(frozen.size(), {});
+    if (frozen.empty()) return;
     const std::vector<std::vector<std::uint32_t>> by_plane = frozen_by_plane(grid, frozen);
     for_each_band(grid, [&](int first, int last, Search& search) {
       for (int plane = first; plane < last; ++plane)

@@ -1,8 +1,9 @@
 // The pair pass of the fast engine: every pair of PPs once (half list), every PP-FP pair once, in rows of lanes.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "parallel/lanes_loop.hpp"

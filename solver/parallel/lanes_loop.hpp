@@ -1,10 +1,8 @@
-// The loops over pairs of the fast engine: one particle against a contiguous row of others, a lane each.
+// The loops over pairs of the fast engine: one particle against blocks of others, a lane each.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
-#include <span>
+#include <type_traits>
 #include <vector>
 
 #include "parallel/pair_blocks.hpp"
@@ -253,8 +251,8 @@ void sum_lists(const PairLaw<D>& law, PairBlock<D>* const blocks, PartnerLists<D
         beta = beta_of(n);
         sums = {};
       },
-      [&](std::uint32_t begin, const Lanes& q) __attribute__((always_inline)) {
-        detail::pair_block<Kernel, transport, lanes_first>(law, blocks[begin], centre, q, beta, sums);
+      [&](std::uint32_t block, const Lanes& q) __attribute__((always_inline)) {
+        detail::pair_block<Kernel, transport, lanes_first>(law, blocks[block], centre, q, beta, sums);
       },
       [&](std::uint32_t n) __attribute__((always_inline)) { receive(n, detail::total(sums)); });
 }

@@ -2,8 +2,9 @@
 // a particle are a range in each row nearby, as long as the chord that the row cuts from the sphere of the cutoff.
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <vector>
 
 #include "base/lanes.hpp"
