@@ -13,7 +13,7 @@ from verification.solver import ROOT, Run
 PACKAGES = ("numpy", "h5py", "pyvista", "vtk", "matplotlib", "Jinja2")
 
 
-def _processor() -> str:
+def processor() -> str:
     for line in Path("/proc/cpuinfo").read_text().splitlines():
         if line.startswith("model name"):
             return line.partition(":")[2].strip()
@@ -25,7 +25,7 @@ def provenance(run: Run) -> dict[str, str]:
     return {
         "commit": record["commit"],
         "compiler": f"{record['compiler']}, {record['flags']}",
-        "host": f"{record['host']}, {_processor()}",
+        "host": f"{record['host']}, {processor()}",
         "system": platform.platform(),
         "Open MPI": subprocess.run(["mpirun", "--version"], capture_output=True, text=True).stdout.splitlines()[0],
         "Python": ", ".join(

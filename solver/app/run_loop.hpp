@@ -289,6 +289,15 @@ void RunLoop<D, E>::write_record(const std::string& state, const std::string& me
   record_.wall_seconds = phases;
   const double done = static_cast<double>(record_.step - first_step_);
   record_.rate = seconds.back() > 0.0 ? done * static_cast<double>(record_.particles) / seconds.back() : 0.0;
+  if constexpr (requires { engine_.traffic(); }) {
+    const Traffic traffic = engine_.traffic();
+    std::vector<double> most{static_cast<double>(traffic.messages), static_cast<double>(traffic.bytes),
+                             static_cast<double>(traffic.neighbours)};
+    setup_.group.maximum(most);
+    record_.messages_per_step = done > 0.0 ? most[0] / done : 0.0;
+    record_.bytes_per_step = done > 0.0 ? most[1] / done : 0.0;
+    record_.neighbours = static_cast<int>(most[2]);
+  }
   if constexpr (requires { engine_.domains(); }) record_.borders = borders_in_scene_units();
   record_.state = state;
   record_.message = message;

@@ -64,6 +64,9 @@ std::string run_record_text(const RunRecord& record) {
   json["time_step"] = record.time_step;
   json["wall_seconds"] = nlohmann::ordered_json::object();
   for (const auto& [phase, seconds] : record.wall_seconds) json["wall_seconds"][phase] = seconds;
+  json["exchange"] = {{"neighbours", record.neighbours},
+                      {"messages_per_step", record.messages_per_step},
+                      {"bytes_per_step", record.bytes_per_step}};
   json["digest"] = record.digest;
   json["momentum"] = {{"start", decimal_strings(record.start_momentum)},
                       {"end", decimal_strings(record.end_momentum)},

@@ -76,6 +76,7 @@ void ParallelEngine<D>::rebalance() {
 
 template <int D>
 void ParallelEngine<D>::start_domains() {
+  before_ = traffic();
   halo_ = std::make_unique<Halo<D>>(model_, domains_, communicator_);
   grid_.fit(halo_->region(), model_.pair.length, cells_per_cutoff<D>());
   if (model_.shapes.empty()) return;
@@ -96,6 +97,17 @@ PhaseSeconds ParallelEngine<D>::phase_seconds() const {
           {"pairs", seconds_[pair_phase]},
           {"solids", seconds_[solid_phase]},
           {"integrate", seconds_[integrate_phase]}};
+}
+
+template <int D>
+Traffic ParallelEngine<D>::traffic() const {
+  Traffic sum = before_;
+  if (halo_ == nullptr) return sum;
+  const Traffic& now = halo_->traffic();
+  sum.messages += now.messages;
+  sum.bytes += now.bytes;
+  sum.neighbours = now.neighbours;
+  return sum;
 }
 
 /// The paper's steps (i)-(xi): copies from the neighbours, interactions, loads of copies sent home, motion. Particles

@@ -33,6 +33,7 @@ class ParallelEngine {
   State<D>& state() { return state_; }
   const std::string& range_error() const { return range_error_; }
   PhaseSeconds phase_seconds() const;
+  Traffic traffic() const;
   const Domains<D>& domains() const { return domains_; }
   /// The ledger of the faces in the last step, in the order of partners, then the entry of all partners; empty where
   /// none was due.
@@ -77,6 +78,7 @@ class ParallelEngine {
 
   std::string range_error_;
   double seconds_[5] = {};
+  Traffic before_;  // of the domains before the present ones
 };
 
 }  // namespace mappm

@@ -38,6 +38,7 @@ Halo<D>::Halo(const Model<D>& model, const Domains<D>& domains, const Communicat
       out_(partners_.size()),
       in_(partners_.size()),
       selected_(images_.size()) {
+  for (const int partner : partners_) traffic_.neighbours += partner != communicator.rank() ? 1 : 0;
   for (const Image<D>& image : images_) {
     image_reach_.push_back(widened(model, image.region, 1.0));
     image_solid_reach_.push_back(widened(model, image.region, solid_margin(model)));
@@ -46,8 +47,11 @@ Halo<D>::Halo(const Model<D>& model, const Domains<D>& domains, const Communicat
 
 template <int D>
 void Halo<D>::swap_messages() {
-  for (std::size_t n = 0; n < partners_.size(); ++n)
-    if (partners_[n] != communicator_.rank()) bytes_sent_ += out_[n].size();
+  for (std::size_t n = 0; n < partners_.size(); ++n) {
+    if (partners_[n] == communicator_.rank()) continue;
+    ++traffic_.messages;
+    traffic_.bytes += out_[n].size();
+  }
   communicator_.exchange(partners_, out_, in_);
   for (Buffer& buffer : out_) buffer.clear();
 }

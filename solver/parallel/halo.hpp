@@ -12,6 +12,7 @@
 #include "parallel/communicator.hpp"
 #include "parallel/domains.hpp"
 #include "parallel/message.hpp"
+#include "particles/engine.hpp"
 #include "particles/solid_step.hpp"
 
 namespace mappm {
@@ -41,8 +42,7 @@ class Halo {
   /// Delivers reports to the owners of the solids; returns those for solids owned here.
   std::vector<HomeReport<D>> send_home(const std::vector<Solid<D>>& copies, std::vector<HomeReport<D>>&& reports);
 
-  /// Bytes sent to other processes so far, and messages.
-  std::uint64_t bytes_sent() const { return bytes_sent_; }
+  const Traffic& traffic() const { return traffic_; }
 
  private:
   Vec<D, double> in_frame(Vec<D, double> x) const;
@@ -62,7 +62,7 @@ class Halo {
   std::vector<int> partners_;
   std::vector<Buffer> out_, in_;
   std::vector<std::vector<std::uint32_t>> selected_;  // PPs chosen for each image
-  std::uint64_t bytes_sent_ = 0;
+  Traffic traffic_;
 };
 
 }  // namespace mappm

@@ -15,6 +15,12 @@ namespace mappm {
 /// Wall seconds spent so far, by phase of the step ("exchange", "sort", "pairs", "solids", "integrate").
 using PhaseSeconds = std::vector<std::pair<std::string, double>>;
 
+/// What one process sent to others so far.
+struct Traffic {
+  std::uint64_t messages = 0, bytes = 0;
+  int neighbours = 0;  // processes that it exchanges with, itself left out
+};
+
 template <class E, int D>
 concept Engine = requires(E engine, const E constant) {
   /// Advances the state by one step. Never throws on a value out of range: it is recorded in range_error().

@@ -235,7 +235,8 @@ void expect_brute_force_halo(const Built<D>& built, const Domains<D>& domains) {
   EXPECT_EQ(testing::total(owned.fluid.size()), global.fluid.size());
   EXPECT_EQ(testing::total(owned.solids.size()), global.solids.size());
   EXPECT_EQ(testing::total(digest_share(owned)), digest_share(global));
-  EXPECT_EQ(halo.bytes_sent() > 0, world().size() > 1);
+  EXPECT_EQ(halo.traffic().bytes > 0, world().size() > 1);
+  EXPECT_EQ(halo.traffic().messages, 2u * static_cast<unsigned>(halo.traffic().neighbours));  // there and home
 }
 
 template <int D>

@@ -49,6 +49,12 @@ def test_the_last_line_and_the_record(tmp_path: Path, ranks: int) -> None:
     assert "rotation of solids" in record["terms"]
     for key in ("commit", "compiler", "flags", "host", "date", "wall_seconds", "particles", "threads"):
         assert record[key], key
+    sent = record["exchange"]
+    if ranks == 2:  # two slabs of a periodic box: one neighbour, one message for the halo and one home
+        assert (sent["neighbours"], sent["messages_per_step"]) == (1, 2)
+        assert sent["bytes_per_step"] > 1000
+    else:
+        assert set(sent.values()) == {0}
     momentum = record["momentum"]
     for start, end, impulse in zip(momentum["start"], momentum["end"], momentum["impulse"], strict=True):
         assert int(end) - int(start) == int(impulse)
