@@ -160,23 +160,3 @@ def trend(history: list[dict], keys: list[str], file: Path) -> None:
         axes.set_xticks(range(len(history)), [f"{entry['date'][:10]}\n{entry['commit'][:8]}" for entry in history], fontsize=8)
         axes.set_ylabel("|error| / goal")
         axes.legend(frameon=False, fontsize=6, ncols=3)
-
-
-def speeds(figures: dict[str, float], file: Path) -> None:
-    """Particle-steps a second of MaPPM and of LIGGGHTS' SPH on one process and on two; figures of bench/speed.py."""
-    fluids = {"2d_39": "plane, 39 neighbours", "3d_77": "space, 77 neighbours"}
-    with figure_of(file, 7, 2.8) as axes:
-        for row, (name, words) in enumerate(fluids.items()):
-            for k, ranks in enumerate((1, 2)):
-                place = 2 * row + 0.9 * k
-                for code, color, side in (("", BLUE, -0.18), ("liggghts_", GREY, 0.18)):
-                    rate = figures.get(f"figure fluid_{name}.{code}particle_steps_per_s_{ranks}")
-                    if rate is None:
-                        continue
-                    label = {"": "MaPPM, double", "liggghts_": "LIGGGHTS, SPH"}[code] if row == k == 0 else None
-                    axes.barh(place + side, rate / 1e6, 0.34, color=color, label=label)
-                    axes.text(rate / 1e6, place + side, f" {rate / 1e6:.2g}", va="center", fontsize=8)
-        axes.set_yticks([0, 0.9, 2, 2.9], [f"{words}, {count}" for words in fluids.values() for count in ("one process", "two")])
-        axes.invert_yaxis()
-        axes.set_xlabel("million particle-steps per second")
-        axes.legend(frameon=False, fontsize=8)

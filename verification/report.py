@@ -12,7 +12,6 @@ from pathlib import Path
 
 from verification.case import Case
 from verification.chapters import chapters_of, families_of, rows_of
-from verification.charts import speeds
 from verification.figures import CaseFigures, case_figures, family_figures, shown_figures, suite_figures
 from verification.history import changes, errors_of, read_history
 from verification.judge import CORRECT, SKIPPED
@@ -24,11 +23,13 @@ from verification.references import run_all_live
 from verification.result import CaseResult, judged, run_bits
 from verification.runner import Job, cores, jobs_of, run_jobs
 from verification.solver import ROOT, Options, Run
+from verification.speed_charts import CHARTS
 from verification.stored import FULL, FULL_CHARTS, PUBLISHED
 
 SHOWN = "gas_solid_small"
 STEPS = {"quick": 8_000, "full": 60_000}  # of the long run
-STORED = {"full": FULL.name, "speed": "speed.json", "mutation": "mutation.json", "robustness": "robustness.json"}  # made by commands of their own
+# Made by commands of their own.
+STORED = {"full": FULL.name, "mutation": "mutation.json", "robustness": "robustness.json"} | {name: f"{name}.json" for name in CHARTS}
 
 
 def _cases(tier: str) -> list[Case]:
@@ -130,14 +131,16 @@ def write_report(tier: str, out: Path, publish: bool) -> int:
         suite = suite_figures([(row.name, row.outcome) for row in rows], [*history, entry], out)
         shown_pictures = shown_figures(shown, out)
         stored = _stored()
-        if "speed" in stored:
-            speeds(stored["speed"]["data"]["figures"], out / "speed.svg")
+        speed_charts = {name: out / f"{name}.svg" for name in CHARTS if name in stored}
+        for name, file in speed_charts.items():
+            CHARTS[name](stored[name]["data"]["figures"], file)
     with progress.stage("page"):
         origin |= {chapter.code: chapter.version for chapter in chapters}
         content = {
             "tier": tier, "results": results, "figures": figures, "families": families, "chapters": chapters,
             "rows": rows, "suite": suite, "shown_pictures": shown_pictures,
-            "shown": SHOWN, "steps": STEPS[tier], "record": shown.record, "ledger": _ledger(shown), "stored": stored, "speed_chart": out / "speed.svg",
+            "shown": SHOWN, "steps": STEPS[tier], "record": shown.record, "ledger": _ledger(shown), "stored": stored,
+            "speed_charts": speed_charts,
             "full_charts": sorted(FULL_CHARTS.glob("*.svg")),
             "changes": changes(history, entry["errors"]), "history": history, "provenance": origin,
             "checksums": reference_checksums(), "took": str(timedelta(seconds=round(time.monotonic() - started))),

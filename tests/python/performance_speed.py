@@ -11,7 +11,7 @@ import pytest
 from bench import speed
 from bench.speed import Broken, Meter, Speed
 from reference.liggghts.program import installed
-from verification.charts import speeds
+from verification.speed_charts import speeds
 
 ROOT = Path(__file__).parents[2]
 

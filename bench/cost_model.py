@@ -1,0 +1,152 @@
+"""What a step costs, taken apart, and what it would cost on processes that this machine does not have.
+
+    python3 -m bench.cost_model [--quick] [--repeats N] [--json FILE] [--out DIR]
+
+The step of a process that owns n PPs, and sends b bytes in m messages, is taken to last
+
+    t = w n + g b + a m + s b
+
+w and g, the work for a PP and for the ghosts behind a byte, are fitted to runs on two processes whose domains have small margins and
+large ones; a and s, a message and a byte on its way, are those of exchanges without work (bench-parallel_exchange). Waiting for a
+slower process is in none of them: measured above predicted is what imbalance and other load add. The model is printed beside the
+runs it was fitted to and others, and then applied to the paper's system (cases/gas_solid_paper) on up to 1024 processes in the
+best grid of domains. Ends with 1 where a measurement is broken, never because the machine is slow.
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from bench.scaling import Lab, Point, doubled, keep, median_of, require_one_digest
+from bench.speed import Broken, scene_of
+from verification.errors import SolverError
+from verification.solver import MPI_ENVIRONMENT, Options, Run, program
+
+PAPER_BOX, PAPER_DENSITY = (177.0, 2816.0), 12.83  # rcut; PPs to the square of rcut
+PAPER_PROCESSES = (1, 4, 16, 64, 256, 1024)
+NARROWEST = 9.0  # rcut, of a domain of the paper's system: its discs are as wide
+LAYOUTS = {"narrow": ((1000, 100), "2x1"), "wide": ((1000, 100), "1x2"), "thin": ((2000, 24), "1x2")}
+QUICK_LAYOUTS = {"narrow": ((200, 40), "2x1"), "wide": ((200, 40), "1x2"), "thin": ((400, 16), "1x2")}
+
+
+@dataclass(frozen=True)
+class CostModel:
+    """Seconds: of a PP, of the work for a byte of ghosts, of a message, of a byte on its way."""
+
+    particle: float
+    ghost_byte: float
+    message: float
+    sent_byte: float
+
+    def seconds(self, particles: float, messages: float, sent: float) -> float:
+        return self.particle * particles + (self.ghost_byte + self.sent_byte) * sent + self.message * messages
+
+
+def fit_work(points: list[Point]) -> tuple[float, float]:
+    """(of a PP, of a byte of ghosts), s, by least squares of relative residuals."""
+    work = np.array([point.work for point in points])
+    rows = np.array([[point.particles / point.processes, point.bytes] for point in points]) / work[:, None]
+    (particle, ghost_byte), *_ = np.linalg.lstsq(rows, np.ones(len(points)), rcond=None)
+    return float(particle), float(ghost_byte)
+
+
+def cost_of_messages() -> tuple[float, float]:
+    """(of a message, of a byte), s."""
+    done = subprocess.run(["mpirun", "-np", "2", str(program("bench-parallel_exchange"))], env=os.environ | MPI_ENVIRONMENT,
+                          capture_output=True, text=True)
+    lines = dict(line.rsplit(" ", 1) for line in done.stdout.splitlines() if line.startswith("figure "))
+    if done.returncode != 0 or len(lines) != 2:
+        raise Broken(f"bench-parallel_exchange ended with {done.returncode}: {done.stderr[-500:]}")
+    return 1e-6 * float(lines["figure message.microseconds"]), 1e-9 * float(lines["figure message.nanoseconds_per_byte"])
+
+
+def margin_of(box: tuple[float, float], grid: tuple[int, int]) -> float:
+    """Area of the margins of one domain of a periodic grid, rcut = 1: what it receives, and what it sends."""
+    sides = [length / count for length, count in zip(box, grid, strict=True)]
+    wide = [side + (2.0 if count > 1 else 0.0) for side, count in zip(sides, grid, strict=True)]
+    return wide[0] * wide[1] - sides[0] * sides[1]
+
+
+def neighbours_of(grid: tuple[int, int]) -> int:
+    """Other domains that touch one, on a periodic grid."""
+    return int(np.prod([min(count, 3) for count in grid])) - 1
+
+
+def predicted(model: CostModel, bytes_per_ghost: float, grid: tuple[int, int]) -> float:
+    """Seconds of a step of the paper's system on a grid of domains; solids are taken for fluid."""
+    particles = PAPER_BOX[0] * PAPER_BOX[1] * PAPER_DENSITY / (grid[0] * grid[1])
+    sent = margin_of(PAPER_BOX, grid) * PAPER_DENSITY * bytes_per_ghost
+    return model.seconds(particles, 2.0 * neighbours_of(grid), sent)  # a message for the halo and one for the loads of copies
+
+
+def best_grid(model: CostModel, bytes_per_ghost: float, processes: int) -> tuple[int, int]:
+    grids = [(columns, processes // columns) for columns in doubled(processes)]
+    fitting = [grid for grid in grids if all(n == 1 or side / n >= NARROWEST for side, n in zip(PAPER_BOX, grid, strict=True))]
+    return min(fitting, key=lambda grid: predicted(model, bytes_per_ghost, grid))
+
+
+def measure(lab: Lab, quick: bool) -> dict[str, float]:
+    layouts = QUICK_LAYOUTS if quick else LAYOUTS
+    found: dict[str, list[Point]] = {name: [] for name in layouts}
+    for done in range(lab.repeats):
+        for name, (sides, domains) in layouts.items():
+            found[name].append(lab.once(name, sides, 10 if quick else 60, Options(ranks=2, domains=domains)))
+        lab.say(f"round {done + 1} of {lab.repeats}")
+    require_one_digest([*found["narrow"], *found["wide"]])
+    points = {name: median_of(rounds) for name, rounds in found.items()}
+    model = CostModel(*fit_work(list(points.values())), *cost_of_messages())
+    cutoff = float(scene_of(2, (1, 1))[1].partition("=")[2])
+    bytes_per_ghost = points["wide"].bytes / (2.0 * cutoff * layouts["wide"][0][0])  # spacing 1, two margins
+    figures = {
+        "figure nanoseconds_per_particle": 1e9 * model.particle,
+        "figure nanoseconds_per_ghost": 1e9 * model.ghost_byte * bytes_per_ghost,
+        "figure microseconds_per_message": 1e6 * model.message,
+        "figure nanoseconds_per_byte": 1e9 * model.sent_byte,
+        "figure bytes_per_ghost": bytes_per_ghost,
+    }
+    for name, point in points.items():
+        seconds = model.seconds(point.particles / point.processes, point.messages, point.bytes)
+        figures[f"figure run_{name}.microseconds_per_step"] = 1e6 * point.seconds
+        figures[f"ratio run_{name}.measured_over_predicted"] = point.seconds / seconds
+    alone = predicted(model, bytes_per_ghost, (1, 1))
+    for processes in PAPER_PROCESSES:
+        grid = best_grid(model, bytes_per_ghost, processes)
+        seconds = predicted(model, bytes_per_ghost, grid)
+        figures[f"figure paper.{processes}.domains_along_x"] = grid[0]
+        figures[f"figure paper.{processes}.microseconds_per_step"] = 1e6 * seconds
+        figures[f"ratio paper.{processes}.efficiency"] = alone / seconds / processes
+    return figures
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="python3 -m bench.cost_model", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true", help="small fluids, which take seconds: to see that all works")
+    parser.add_argument("--repeats", type=int, help="rounds, at least 1; default 7, with --quick 1")
+    parser.add_argument("--json", type=Path, help="also keep the figures in this file")
+    parser.add_argument("--out", type=Path, help="folder of the runs (default: one that is removed)")
+    options = parser.parse_args()
+    repeats = options.repeats if options.repeats is not None else (1 if options.quick else 7)
+    if repeats < 1:
+        parser.error(f"--repeats {repeats}: must be at least 1")
+    with tempfile.TemporaryDirectory() as scratch:
+        lab = Lab(options.out or Path(scratch), repeats, lambda text: print(text, file=sys.stderr, flush=True))
+        try:
+            figures = measure(lab, options.quick)
+            commit = Run(lab.folder / "fluid").record["commit"]
+        except (Broken, SolverError) as error:
+            print(f"cost_model: {error}", file=sys.stderr)
+            return 1
+    command = "python3 -m bench.cost_model" + (" --quick" if options.quick else "") + f" --repeats {repeats}"
+    keep(figures, command, commit, options.json)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

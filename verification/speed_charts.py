@@ -1,0 +1,89 @@
+"""Charts of what the benchmarks of bench/ keep in reports/published."""
+
+from pathlib import Path
+
+from verification.charts import BLUE, DARK, GREEN, GREY, RED, figure_of
+
+FLUIDS = {"2d_39": "plane, 39 neighbours", "3d_77": "space, 77 neighbours"}
+PHASES = {"pairs": BLUE, "integrate": GREEN, "sort": GREY, "solids": DARK, "exchange": RED}
+
+
+def speeds(figures: dict[str, float], file: Path) -> None:
+    """Particle-steps a second of MaPPM and of LIGGGHTS' SPH on one process and on two; figures of bench/speed.py."""
+    with figure_of(file, 7, 2.8) as axes:
+        for row, (name, words) in enumerate(FLUIDS.items()):
+            for k, ranks in enumerate((1, 2)):
+                place = 2 * row + 0.9 * k
+                for code, color, side in (("", BLUE, -0.18), ("liggghts_", GREY, 0.18)):
+                    rate = figures.get(f"figure fluid_{name}.{code}particle_steps_per_s_{ranks}")
+                    if rate is None:
+                        continue
+                    label = {"": "MaPPM, double", "liggghts_": "LIGGGHTS, SPH"}[code] if row == k == 0 else None
+                    axes.barh(place + side, rate / 1e6, 0.34, color=color, label=label)
+                    axes.text(rate / 1e6, place + side, f" {rate / 1e6:.2g}", va="center", fontsize=8)
+        axes.set_yticks([0, 0.9, 2, 2.9], [f"{words}, {count}" for words in FLUIDS.values() for count in ("one process", "two")])
+        axes.invert_yaxis()
+        axes.set_xlabel("million particle-steps per second")
+        axes.legend(frameon=False, fontsize=8)
+
+
+def _over_processes(figures: dict[str, float], prefix: str, name: str) -> dict[int, float]:
+    """{processes: value} of the figures `prefix.PROCESSES.name`."""
+    parts = {key.split(" ")[1]: value for key, value in figures.items()}
+    return {int(key.split(".")[-2]): value for key, value in parts.items()
+            if key.startswith(prefix + ".") and key.endswith("." + name) and key.split(".")[-2].isdigit()}
+
+
+def _log2(axes, counts: list[int]) -> None:
+    axes.set_xscale("log", base=2)
+    axes.set_xticks(counts, [str(count) for count in counts])
+    axes.set_xlabel("processes")
+
+
+def scalings(figures: dict[str, float], file: Path) -> None:
+    """Efficiency over processes, and the core time of a PP by phase; figures of bench/scaling.py."""
+    with figure_of(file, 10, 3.4, columns=2) as (efficiency, phases):
+        sets = {"strong_2d": ("a million PPs, plane", BLUE, "o-"), "strong_3d": ("half a million, space", GREEN, "s-"),
+                "weak_2d": ("100 000 a process, plane", DARK, "^--")}
+        for prefix, (label, color, style) in sets.items():
+            found = {1: 1.0} | _over_processes(figures, prefix, "efficiency")
+            efficiency.plot(list(found), list(found.values()), style, color=color, markersize=4, linewidth=1.2, label=label)
+        counts = list(found)
+        _log2(efficiency, counts)
+        efficiency.set_ylim(0, 1.1)
+        efficiency.set_title("efficiency against one process", fontsize=9)
+        efficiency.legend(frameon=False, fontsize=7, loc="lower left")
+        floor = [0.0] * len(counts)
+        rates = _over_processes(figures, "weak_2d", "particle_steps_per_s")
+        for phase, color in PHASES.items():
+            seconds = _over_processes(figures, "weak_2d", f"microseconds_{phase}")
+            step = {count: sum(_over_processes(figures, "weak_2d", f"microseconds_{name}")[count] for name in PHASES) for count in counts}
+            values = [1e9 / rates[count] * count * seconds[count] / step[count] for count in counts]
+            phases.bar(range(len(counts)), values, 0.6, bottom=floor, color=color, label=phase if max(values) > 1 else None)
+            floor = [low + value for low, value in zip(floor, values, strict=True)]
+        phases.set_xticks(range(len(counts)), counts)
+        phases.set_xlabel("processes")
+        phases.set_title("core time of a PP and step (ns), 100 000 a process", fontsize=9)
+        phases.legend(frameon=False, fontsize=7, loc="upper left")
+
+
+def costs(figures: dict[str, float], file: Path) -> None:
+    """The parts of a step of the paper's system over processes, and their sum; figures of bench/cost_model.py."""
+    with figure_of(file, 10, 3.2, columns=2) as (time, efficiency):
+        seconds = _over_processes(figures, "paper", "microseconds_per_step")
+        share = _over_processes(figures, "paper", "efficiency")
+        time.plot(list(seconds), [value / 1e3 for value in seconds.values()], "o-", color=BLUE, markersize=4, linewidth=1.2,
+                  label="predicted")
+        time.plot(list(seconds), [next(iter(seconds.values())) / 1e3 / count for count in seconds], "--", color=GREY, linewidth=1,
+                  label="without ghosts and messages")
+        time.set_yscale("log")
+        time.set_title("the paper's 5.6 million PPs: a step (ms)", fontsize=9)
+        time.legend(frameon=False, fontsize=8)
+        efficiency.plot(list(share), list(share.values()), "o-", color=BLUE, markersize=4, linewidth=1.2)
+        efficiency.set_ylim(0, 1.1)
+        efficiency.set_title("efficiency against one process", fontsize=9)
+        for axes in (time, efficiency):
+            _log2(axes, list(seconds))
+
+
+CHARTS = {"speed": speeds, "scaling": scalings, "cost_model": costs}  # by the name of the table in reports/published
