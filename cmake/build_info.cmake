@@ -5,7 +5,8 @@ set(MAPPM_GENERATED_DIR ${CMAKE_BINARY_DIR}/generated)
 add_custom_target(mappm_write_build_info
   COMMAND ${CMAKE_COMMAND} -D SOURCE_DIR=${CMAKE_SOURCE_DIR} -D OUTPUT=${MAPPM_GENERATED_DIR}/build_info.hpp
     "-D COMPILER=${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}" "-D FLAGS=${flags}"
-    "-D VERSION=${PROJECT_VERSION}" -P ${CMAKE_CURRENT_LIST_DIR}/write_build_info.cmake
+    "-D VERSION=${PROJECT_VERSION}"
+    "-D PORTABLE=$<IF:$<BOOL:${MAPPM_PORTABLE}>,true,false>" -P ${CMAKE_CURRENT_LIST_DIR}/write_build_info.cmake
   BYPRODUCTS ${MAPPM_GENERATED_DIR}/build_info.hpp
   VERBATIM)
 add_library(mappm_build_info INTERFACE)

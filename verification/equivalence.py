@@ -14,6 +14,7 @@ a border at all, on two with `rebalance` and `build`.
     threads 2          of each rank
     rebalance 100      steps between moves of the borders to the particle load
     build clang        programs of that preset
+    isa avx2           instruction set of a build that holds several: `build portable isa avx2`
     restart 2->3       half of the steps on 2 ranks, the rest on 3, from a checkpoint; stands alone
 
 The first variant is what the others are held against.
@@ -28,10 +29,10 @@ from pathlib import Path
 
 from verification.errors import CaseError, SolverError
 from verification.series import Table, first_difference
-from verification.solver import ROOT, Options, program, run
+from verification.solver import INSTRUCTION_SETS, ROOT, Options, best_instruction_set, program, run
 
 UNCHANGED, CHANGED = "UNCHANGED", "CHANGED"
-WORDS = "serial, all-pairs, P=N, domains AxB, threads N, rebalance N, build PRESET, restart A->B"
+WORDS = "serial, all-pairs, P=N, domains AxB, threads N, rebalance N, build PRESET, isa SET, restart A->B"
 
 
 @dataclass(frozen=True)
@@ -65,9 +66,9 @@ class Row:
     @property
     def line(self) -> str:
         if self.skipped:
-            return f"{self.variant:24} skipped: {self.skipped}"
+            return f"{self.variant:26} skipped: {self.skipped}"
         verdict = f"equal at all {self.samples} samples" if self.equal else f"differs from step {self.difference} on"
-        return f"{self.variant:24} {self.digest}  {verdict}"
+        return f"{self.variant:26} {self.digest}  {verdict}"
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,7 @@ def _variant(label: str, where: str, key: str) -> Variant:
             given[name] = ""
         elif name == "P":
             given[name] = word[2:]
-        elif name in ("domains", "threads", "rebalance", "build", "restart") and words:
+        elif name in ("domains", "threads", "rebalance", "build", "isa", "restart") and words:
             given[name] = words.pop(0)
         else:
             refuse(f"{word!r} is unknown or lacks its value; words are {WORDS}")
@@ -134,6 +135,9 @@ def _variant(label: str, where: str, key: str) -> Variant:
         return Variant(label, Options(ranks=0, neighbours="all-pairs" if "all-pairs" in given else None, build=build))
     if "all-pairs" in given:
         refuse("all-pairs is a search of the serial reference; write 'serial all-pairs'")
+    isa = given.get("isa")
+    if isa is not None and (isa not in INSTRUCTION_SETS or build is None):
+        refuse(f"isa is one of {', '.join(INSTRUCTION_SETS)}, and goes with a build, as in 'build portable isa plain'")
     domains = given.get("domains")
     if domains is not None and not re.fullmatch(r"[1-9]\d*(x[1-9]\d*){1,2}", domains):
         refuse(f"{domains!r} is no grid; write domains along each axis, as in 2x2")
@@ -142,7 +146,7 @@ def _variant(label: str, where: str, key: str) -> Variant:
     if domains and ranks != implied:
         refuse(f"{domains} are {implied} domains, not {ranks}; write P={implied} or leave P out")
     optional = {key: number(given[key]) for key in ("threads", "rebalance") if key in given}
-    return Variant(label, Options(ranks=ranks, domains=domains, build=build, **optional))
+    return Variant(label, Options(ranks=ranks, domains=domains, build=build, isa=isa, **optional))
 
 
 def read_equivalence(table: dict, where: str) -> Equivalence:
@@ -183,11 +187,18 @@ def _series(scene: Path, variant: Variant, steps: int, every: int, folder: Path)
     return run(scene, folder, replace(options, ranks=variant.resumed_on, resume=checkpoint)).series
 
 
-def _missing(variant: Variant) -> str:
-    if variant.options.build is None:
-        return "the programs are not built; ./check builds them"
-    preset = variant.options.build.name
-    return f"not built; cmake --preset {preset} && cmake --build --preset {preset} --target mappm mappm-reference"
+def _obstacle(variant: Variant) -> str:
+    """Why it cannot be run here; empty where it can."""
+    name, build, isa = "mappm" if variant.options.ranks else "mappm-reference", variant.options.build, variant.options.isa
+    try:
+        program(name, build)
+    except SolverError:
+        if build is None:
+            return "the programs are not built; ./check builds them"
+        return f"not built; cmake --preset {build.name} && cmake --build --preset {build.name} --target {name}"
+    if isa and INSTRUCTION_SETS.index(isa) > INSTRUCTION_SETS.index(best_instruction_set(build)):
+        return f"this processor has no {isa}"
+    return ""
 
 
 def _row(variant: Variant, series: Table, reference: Table) -> Row:
@@ -197,17 +208,17 @@ def _row(variant: Variant, series: Table, reference: Table) -> Row:
 
 def run_matrix(scene: Path, equivalence: Equivalence, out: Path, say: Callable[[str], None] = print) -> Matrix:
     """Runs every variant in a folder of its own under `out`, which is emptied before, and says each row as it comes.
-    A run that fails is a SolverError; a variant whose programs are not built is skipped, and so not equal."""
+    A run that fails is a SolverError; a variant whose programs are not built, or not for this processor, is skipped, and
+    so not equal."""
     shutil.rmtree(out, ignore_errors=True)
     rows: list[Row] = []
     reference: Table | None = None
     for index, variant in enumerate(equivalence.variants):
-        try:
-            program("mappm" if variant.options.ranks else "mappm-reference", variant.options.build)
-        except SolverError:
-            if reference is None:
-                raise  # nothing to compare with
-            row = Row(variant.label, skipped=_missing(variant))
+        skipped = _obstacle(variant)
+        if skipped and reference is None:
+            raise SolverError(f"{variant.label}: {skipped}")  # nothing to compare with
+        if skipped:
+            row = Row(variant.label, skipped=skipped)
         else:
             series = _series(scene, variant, equivalence.steps, equivalence.every, out / str(index))
             if reference is None:

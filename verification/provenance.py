@@ -24,7 +24,7 @@ def provenance(run: Run) -> dict[str, str]:
     record = run.record
     return {
         "commit": record["commit"],
-        "compiler": f"{record['compiler']}, {record['flags']}",
+        "compiler": f"{record['compiler']}, {record['flags']}, {record['instruction_set']}",
         "host": f"{record['host']}, {processor()}",
         "system": platform.platform(),
         "Open MPI": subprocess.run(["mpirun", "--version"], capture_output=True, text=True).stdout.splitlines()[0],

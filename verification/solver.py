@@ -38,6 +38,15 @@ def program(name: str, build: Path | None = None) -> Path:
     return path
 
 
+INSTRUCTION_SETS = ("plain", "avx2", "avx512")  # each holds those before it
+
+
+def best_instruction_set(build: Path | None = None) -> str:
+    """The one that mappm chooses on this processor."""
+    said = subprocess.run([program("mappm", build), "--version"], capture_output=True, text=True, check=True).stdout
+    return said.split()[-1]
+
+
 @dataclass(frozen=True)
 class Options:
     """How to run one scene. ranks = 0 is the serial reference; more than one rank goes through mpirun."""
@@ -53,6 +62,7 @@ class Options:
     resume: Path | None = None
     neighbours: str | None = None  # search of the reference: "cells" or "all-pairs"
     build: Path | None = None
+    isa: str | None = None  # instruction set of a portable build; by default the best of the processor
 
     @property
     def label(self) -> str:
@@ -69,6 +79,8 @@ class Options:
             parts.append("resumed")
         if self.build:
             parts.append(f"build {self.build.name}")
+        if self.isa:
+            parts.append(f"isa {self.isa}")
         return ", ".join(parts)
 
     def command(self, scene: Path, out: Path) -> list[str]:
@@ -84,6 +96,7 @@ class Options:
             ("--trace", self.trace),
             ("--resume", self.resume),
             ("--neighbours", self.neighbours),
+            ("--isa", self.isa),
         ):
             if value is not None:
                 line += [flag, str(value)]

@@ -1,10 +1,14 @@
 // mappm: the parallel solver. It runs as one process, or as many under mpirun.
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <exception>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/command.hpp"
+#include "app/instruction_set.hpp"
 #include "app/run_loop.hpp"
 #include "parallel/communicator.hpp"
 #include "parallel/domains.hpp"
@@ -18,6 +22,7 @@ namespace {
 struct DomainOptions {
   std::string grid;    // "2x4"; empty: slabs
   bool faces = false;  // the ledger of the faces, at every sample
+  std::string isa;     // instruction set; empty: the best
   ParallelOptions engine;
 
   /// What differs from the defaults, as it is given on the command line.
@@ -26,9 +31,19 @@ struct DomainOptions {
     if (engine.threads != ParallelOptions{}.threads) text += " --threads " + std::to_string(engine.threads);
     if (engine.rebalance != ParallelOptions{}.rebalance) text += " --rebalance " + std::to_string(engine.rebalance);
     if (faces) text += " --faces";
+    if (!isa.empty()) text += " --isa " + isa;
     return text;
   }
 };
+
+/// Throws InputError. What --isa names was chosen before this code began, if it could be.
+void check_instruction_set(const std::string& isa) {
+  if (isa.empty() || isa == instruction_set) return;
+  const char* const fix = build_info::portable
+                              ? "this processor lacks it; leave --isa out, which chooses {} here"
+                              : "this program is built for {} alone; leave --isa out, or build the preset portable";
+  throw InputError("command line", "--isa", isa, fmt::format(fmt::runtime(fix), instruction_set));
+}
 
 template <int D>
 void run_scene(const Scene& scene, const RunOptions& options, const DomainOptions& domain_options,
@@ -70,8 +85,11 @@ int main(int argc, char** argv) try {
         ->check(not_negative);
     command.add_flag("--faces", domain_options.faces,
                      "write to faces.csv, at every sample, the impulse that each domain received from each other");
+    command.add_option("--isa", domain_options.isa, "instruction set (default: the best that the processor has)")
+        ->check(CLI::IsMember(std::vector<std::string>(instruction_sets.begin(), instruction_sets.end())));
   };
   return run_command(argc, argv, communicator, "mappm", add_options, [&](const RunOptions& options) {
+    together(communicator, [&] { check_instruction_set(domain_options.isa); });
     const Scene scene = together(communicator, [&] { return read_scene(options.scene, options.overrides); });
     if (scene.dimension == 2)
       run_scene<2>(scene, options, domain_options, communicator);

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "app/instruction_set.hpp"
 #include "app/options.hpp"
 #include "app/poll.hpp"
 #include "app/start.hpp"
@@ -143,6 +144,7 @@ void RunLoop<D, E>::begin() {
   check_trace();
   on_first(group, [&] { make_folder(folder_); });
   record_.program = program;
+  record_.instruction_set = instruction_set;
   record_.scene_file = scene.file;
   record_.scene_name = scene.name;
   record_.scene_text = scene.text;

@@ -54,6 +54,7 @@ std::string run_record_text(const RunRecord& record) {
   json["commit"] = build_info::commit;
   json["compiler"] = build_info::compiler;
   json["flags"] = build_info::flags;
+  json["instruction_set"] = record.instruction_set;
   json["host"] = host_name();
   json["date"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   json["scene"] = {{"file", record.scene_file}, {"name", record.scene_name}, {"text", record.scene_text}};

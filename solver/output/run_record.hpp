@@ -16,7 +16,7 @@ namespace mappm {
 std::vector<std::string> term_names(const Terms& terms);
 
 struct RunRecord {
-  std::string program;
+  std::string program, instruction_set;
   std::string scene_file, scene_name, scene_text;
   Terms terms;
   std::vector<std::string> warnings;

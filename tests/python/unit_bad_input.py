@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.solver import MPI_ENVIRONMENT, Options, program, run
+from verification.solver import MPI_ENVIRONMENT, Options, best_instruction_set, program, run
 
 SCENES = Path(__file__).parent / "scenes"
 SCENE = SCENES / "random_discs.toml"
@@ -122,6 +122,14 @@ def test_a_grid_of_domains_that_cannot_be(tmp_path: Path, options: Options, part
         assert part in message
 
 
+def test_an_instruction_set_that_the_program_lacks(tmp_path: Path) -> None:
+    best = best_instruction_set()
+    other = "avx2" if best == "plain" else "plain"
+    message = only_error(call(Options(ranks=2, isa=other), tmp_path), INPUT)
+    for part in ("--isa", other, best, "leave --isa out"):
+        assert part in message
+
+
 def test_paths_that_cannot_be_used(tmp_path: Path) -> None:
     assert "nowhere.toml" in only_error(call(Options(), tmp_path, tmp_path / "nowhere.toml"), INPUT)
     blocking = tmp_path / "file"
@@ -133,7 +141,7 @@ def test_paths_that_cannot_be_used(tmp_path: Path) -> None:
 def test_the_command_line_is_checked_too(tmp_path: Path) -> None:
     for words in ([], ["walk"], ["run"], ["run", str(SCENE), "--speed", "3"], ["run", str(SCENE), "--threads", "0"],
                   ["run", str(SCENE), "--steps", "-5"], ["run", str(SCENE), "--rebalance", "-1"],
-                  ["run", str(SCENE), "--trace", "7"], ["run", str(SCENE), "--trace", "7@-1"],
+                  ["run", str(SCENE), "--isa", "sse2"], ["run", str(SCENE), "--trace", "7"], ["run", str(SCENE), "--trace", "7@-1"],
                   ["run", str(SCENE), "--trace", "7@20", "--steps", "20"]):
         finished = subprocess.run([program("mappm"), *words], cwd=tmp_path, capture_output=True, text=True)
         assert finished.returncode == INPUT

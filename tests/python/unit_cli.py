@@ -17,7 +17,16 @@ import numpy as np
 import pytest
 import pyvista
 
-from verification.solver import MPI_ENVIRONMENT, ROOT, Options, Run, program, run
+from verification.solver import (
+    INSTRUCTION_SETS,
+    MPI_ENVIRONMENT,
+    ROOT,
+    Options,
+    Run,
+    best_instruction_set,
+    program,
+    run,
+)
 
 SCENE = ROOT / "cases" / "crossing_2d" / "case.toml"
 PATIENT = {"OMPI_MCA_odls_base_sigkill_timeout": "10"}  # mpirun kills a second after SIGTERM: short on a loaded machine
@@ -47,7 +56,7 @@ def test_the_last_line_and_the_record(tmp_path: Path, ranks: int) -> None:
     assert record["digest"] in stdout.splitlines()[-1]
     assert finished.scene["fluid"]["viscosity"] == 0.003  # the scene as it was run
     assert "rotation of solids" in record["terms"]
-    for key in ("commit", "compiler", "flags", "host", "date", "wall_seconds", "particles", "threads"):
+    for key in ("commit", "compiler", "flags", "instruction_set", "host", "date", "wall_seconds", "particles", "threads"):
         assert record[key], key
     sent = record["exchange"]
     if ranks == 2:  # two slabs of a periodic box: one neighbour, one message for the halo and one home
@@ -79,6 +88,12 @@ def test_help_and_version() -> None:
         for words, expected in ((["run", "--help"], "--set"), (["--version"], name)):
             finished = subprocess.run([program(name), *words], capture_output=True, text=True, check=True)
             assert expected in finished.stdout
+
+
+def test_the_instruction_set_may_be_named(tmp_path: Path) -> None:
+    best = best_instruction_set()
+    assert best in INSTRUCTION_SETS
+    assert run(SCENE, tmp_path, Options(steps=1, isa=best)).record["instruction_set"] == best
 
 
 def test_a_snapshot_opens_in_pyvista(tmp_path: Path) -> None:

@@ -122,14 +122,16 @@ MATRIX = {"steps": 100, "every": 50, "variants": ["serial", "P=2"]}
 
 
 def test_words_of_a_variant_become_options() -> None:
-    labels = ["serial all-pairs", "domains 2x3", "P=2 threads 2", "rebalance 10", "build clang", "restart 2->3"]
+    labels = ["serial all-pairs", "domains 2x3", "P=2 threads 2", "rebalance 10", "build clang", "restart 2->3",
+              "build portable isa avx2"]
     found = [v.options for v in read_equivalence(MATRIX | {"variants": labels}, WHERE).variants]
-    assert [options.ranks for options in found] == [0, 6, 2, 2, 2, 2]
+    assert [options.ranks for options in found] == [0, 6, 2, 2, 2, 2, 2]
     assert found[0].neighbours == "all-pairs"
     assert found[1].domains == "2x3"
     assert found[2].threads == 2
     assert found[3].rebalance == 10
     assert found[4].build.name == "clang"
+    assert (found[6].build.name, found[6].isa) == ("portable", "avx2")
     assert read_equivalence(MATRIX | {"variants": labels}, WHERE).variants[5].resumed_on == 3
 
 
@@ -144,6 +146,8 @@ def test_words_of_a_variant_become_options() -> None:
         ({"variants": ["serial", "ranks 2"]}, "variants[1] = 'ranks 2': 'ranks' is unknown"),
         ({"variants": ["serial", "P=3 domains 2x2"]}, "2x2 are 4 domains, not 3; write P=4"),
         ({"variants": ["serial", "serial threads 2"]}, "the serial reference goes with"),
+        ({"variants": ["serial", "isa avx2"]}, "isa is one of plain, avx2, avx512, and goes with a build"),
+        ({"variants": ["serial", "build portable isa sse2"]}, "isa is one of plain, avx2, avx512"),
         ({"variants": ["serial", "restart 2"]}, "restart stands alone, as in 'restart 2->3'"),
         ({"colour": 1}, "colour = 1: unknown; known are steps, every, variants"),
     ],

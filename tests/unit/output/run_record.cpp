@@ -14,6 +14,7 @@ namespace {
 RunRecord record() {
   RunRecord record;
   record.program = "mappm";
+  record.instruction_set = "avx2";
   record.scene_file = "a/case.toml";
   record.scene_name = "a";
   record.scene_text = "name = 'a'\n";
@@ -43,8 +44,8 @@ RunRecord record() {
 TEST(RunRecord, has_every_key_that_readers_rely_on) {
   const auto json = nlohmann::json::parse(run_record_text(record()));
   for (const char* key :
-       {"commit", "compiler", "flags", "host", "date", "scene", "terms", "steps", "wall_seconds", "digest", "momentum",
-        "ranks", "domains", "threads", "particles", "particle_steps_per_second", "state"})
+       {"commit", "compiler", "flags", "instruction_set", "host", "date", "scene", "terms", "steps", "wall_seconds",
+        "digest", "momentum", "ranks", "domains", "threads", "particles", "particle_steps_per_second", "state"})
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_EQ(json["steps"], 25);
   EXPECT_EQ(json["first_step"], 5);
