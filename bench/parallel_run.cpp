@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -20,6 +19,7 @@
 #include "disordered_fluid.hpp"
 #include "parallel/engine.hpp"
 #include "serial/engine.hpp"
+#include "stopwatch.hpp"
 
 namespace mappm {
 namespace {
@@ -28,11 +28,6 @@ constexpr int repeats = 7, steps_a_repeat = 15, first_steps = 10;
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 /// Largest resident set of this process since `reset_peak`, bytes.
@@ -96,7 +91,7 @@ double step_seconds(const Communicator& world, Engine& engine, int count, int st
     world.maximum(std::span(&taken, 1));
     seconds.push_back(taken);
   }
-  return median(seconds);
+  return bench::median(seconds);
 }
 
 template <int D>

@@ -20,6 +20,12 @@ def processor() -> str:
     return platform.processor()
 
 
+def commit() -> str:
+    """Of the sources here, as the build writes it into the programs."""
+    command = ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=12"]
+    return subprocess.run(command, capture_output=True, text=True).stdout.strip() or "unknown"
+
+
 def provenance(run: Run) -> dict[str, str]:
     record = run.record
     return {

@@ -86,4 +86,35 @@ def costs(figures: dict[str, float], file: Path) -> None:
             _log2(axes, list(seconds))
 
 
-CHARTS = {"speed": speeds, "scaling": scalings, "cost_model": costs}  # by the name of the table in reports/published
+def bounds(figures: dict[str, float], file: Path) -> None:
+    """What a pair takes in the pass, part by part, beside its bounds by the machine; figures of bench/roofline.py."""
+    parts = {"lay_out": ("blocks laid out", "#a9c4dd"), "lists": ("lists", "#6f9cc4"),
+             "distances": ("distances", "#3f79ad"), "pairs": ("pairs", BLUE)}
+    limits = {"loads": "loads, nearest cache", "stores": "stores, nearest cache", "memory": "main memory",
+              "roots": "roots", "multiplications": "multiplications", "additions": "additions", "both": "both at once",
+              "integers": "integer additions", "full_lanes": "arithmetic on full lanes"}
+    with figure_of(file, 9, 3.6, columns=2) as axes:
+        axes[1].sharey(axes[0])
+        for panel, (name, words) in zip(axes, FLUIDS.items(), strict=True):
+            left = 0.0
+            for part, (label, color) in parts.items():
+                taken = figures[f"figure fluid_{name}.ns_per_pair_{part}"]
+                panel.barh(0, taken, 0.7, left=left, color=color, label=label)
+                left += taken
+            whole = figures[f"figure fluid_{name}.ns_per_pair_pass"]
+            panel.text(left, 0, f" {whole:.3g}", va="center", fontsize=8)
+            for row, limit in enumerate(limits, start=1):
+                value = figures[f"figure fluid_{name}.bound_ns_per_pair_{limit}"]
+                panel.barh(row, value, 0.6, color=GREEN if limit == "full_lanes" else GREY)
+                panel.text(value, row, f" {value:.2g}", va="center", fontsize=8)
+            panel.set_title(words, fontsize=10)
+            panel.set_xlabel("ns per pair")
+            panel.margins(x=0.12)
+        axes[0].set_yticks(range(len(limits) + 1), ["the pass, measured", *limits.values()])
+        axes[0].invert_yaxis()
+        axes[1].tick_params(labelleft=False)
+        axes[1].legend(frameon=False, fontsize=8, loc="lower right")
+
+
+# By the name of the table in reports/published.
+CHARTS = {"speed": speeds, "scaling": scalings, "cost_model": costs, "roofline": bounds}

@@ -155,6 +155,12 @@ void FluidPass<D>::for_each_list(const CellGrid<D>& grid, const Vec<D, int>& row
 }
 
 template <int D>
+void FluidPass<D>::for_each_list(const CellGrid<D>& grid, const std::function<void(PartnerLists<D>&)>& visit) {
+  Search search;
+  for_each_row(grid, 0, grid.count(D - 1), [&](const Vec<D, int>& row) { for_each_list(grid, row, search, visit); });
+}
+
+template <int D>
 template <class Kernel, bool transport>
 void FluidPass<D>::sum_row(const CellGrid<D>& grid, const Vec<D, int>& row, Search& search) {
   for_each_list(grid, row, search, [&](PartnerLists<D>& lists) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -32,6 +33,9 @@ class FluidPass {
   /// pair of `sum` taken alone; none where there is no such PP. For an FP `id` is the index of its solid in the step.
   std::optional<std::vector<PartnerTrace<D>>> trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
                                                     const std::vector<FrozenInStep<D>>& frozen, std::uint64_t particle);
+
+  /// After `sum` and with its grid: calls visit(lists) with the pairs of PPs, lists by lists as `sum` meets them.
+  void for_each_list(const CellGrid<D>& grid, const std::function<void(PartnerLists<D>&)>& visit);
 
  private:
   /// What a thread searches with.

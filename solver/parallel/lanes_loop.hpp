@@ -81,6 +81,8 @@ class PartnerLists {
     size_ = 0;
   }
   bool is_full() const { return size_ >= full; }
+  /// Number of blocks: those that hold a partner, and after `measure` those within the cutoff.
+  std::size_t size() const { return size_; }
 
   /// Adds a particle with its ranges of places: range(n) for n < count.
   template <class RangeOf>

@@ -1,0 +1,208 @@
+// What the pair pass meets, and what it costs, on a fluid in disorder: 39 neighbours in the plane, 77 in space.
+//   bench-pair_census SIDE_2D SIDE_3D ROUNDS
+// SIDE: PPs along each axis. ROUNDS: of the timed parts; with 0 each part is made once, untimed, for a tool that counts
+// instructions. Prints one line a figure; those in time are medians over the rounds, ns a pair within the cutoff.
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "counted.hpp"
+#include "parallel/fluid_pass.hpp"
+#include "sorted_fluid.hpp"
+#include "stopwatch.hpp"
+
+namespace mappm {
+using bench::Counted, bench::Operations, bench::SortedFluid;
+namespace {
+
+constexpr int across = 1, along = 8;  // cells to a cutoff, as in the engine
+
+/// What the lists of a pass hold: blocks that are measured, those kept for their distance, candidates, pairs within
+/// the cutoff.
+struct Census {
+  std::uint64_t listed = 0, kept = 0, candidates = 0, pairs = 0;
+};
+
+/// The parts of a pass, each by itself. None is inlined, so that a tool can tell them apart.
+template <int D>
+class Parts {
+ public:
+  explicit Parts(std::uint64_t side) : setup_(side, across, along), pass_(setup_.fluid.model, 1) {
+    sum();
+    lay_blocks();
+  }
+
+  const SortedFluid<D>& setup() const { return setup_; }
+
+  [[gnu::noinline]] void sort() { setup_.grid.sort(setup_.particles); }
+  [[gnu::noinline]] void lay_out() { lay_blocks(); }
+  [[gnu::noinline]] void lists() {
+    pass_.for_each_list(setup_.grid, [](PartnerLists<D>&) {});
+  }
+  [[gnu::noinline]] void lists_and_distances() {
+    pass_.for_each_list(setup_.grid, [&](PartnerLists<D>& lists) { measure_distances(lists); });
+  }
+  [[gnu::noinline]] void whole_pass() { sum(); }
+
+  Census census() {
+    Census found;
+    pass_.for_each_list(setup_.grid, [&](PartnerLists<D>& lists) {
+      found.listed += lists.size();
+      lists.for_each_partner([&](std::uint32_t, std::uint32_t) { ++found.candidates; });
+      measure_distances(lists);
+      found.kept += lists.size();
+      lists.for_each_block([](std::uint32_t) {},
+                           [&](std::uint32_t, const Lanes& q) {
+                             for (int lane = 0; lane < lane_count; ++lane) found.pairs += q[lane] < 1.0 ? 1 : 0;
+                           },
+                           [](std::uint32_t) {});
+    });
+    if (found.pairs != setup_.pairs)
+      throw std::runtime_error(fmt::format("{} pairs in the lists, {} in the fluid", found.pairs, setup_.pairs));
+    return found;
+  }
+
+ private:
+  void lay_blocks() { blocks_.fill(setup_.fluid.model, setup_.particles, setup_.grid); }
+  void sum() {
+    std::vector<NeighbourSums<D>> frozen_sums;
+    pass_.sum(setup_.particles, setup_.grid, {}, frozen_sums);
+  }
+  void measure_distances(PartnerLists<D>& lists) {
+    lists.template measure<false>(setup_.fluid.model.pair, blocks_.data());
+  }
+
+  SortedFluid<D> setup_;
+  FluidPass<D> pass_;
+  PairBlocks<D> blocks_;
+};
+
+/// Operations of a block, and the registers it loads and stores.
+struct BlockWork {
+  Operations operations;
+  int loads = 0, stores = 0;
+};
+
+template <int D>
+Vec<D, Counted> of_lanes(Operations& operations) {
+  Vec<D, Counted> numbers;
+  for (int axis = 0; axis < D; ++axis) numbers[axis] = Counted::of_lanes(0.25, operations);
+  return numbers;
+}
+
+/// Distances of a listed block (`PartnerLists::measure`).
+template <int D>
+BlockWork work_of_distances(const Model<D>& model) {
+  BlockWork work;
+  const Vec<D, Counted> r = separation(model.pair, Vec<D, Counted>{} - of_lanes<D>(work.operations));
+  dot(r, r);
+  work.operations.additions += 5;  // first and last partner against the number of the lane, and whether any is below 1
+  work.loads = D;
+  work.stores = 1;
+  return work;
+}
+
+/// Root and law of a block that is kept (`for_each_block`, `pair_block`).
+template <int D>
+BlockWork work_of_pairs(const Model<D>& model) {
+  BlockWork work;
+  Operations& operations = work.operations;
+  with_pair_law(model, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
+    constexpr int components = (transport ? 2 * D : D) + 1;
+    const Counted q = cut_distance(Counted::of_lanes(0.25, operations));
+    const Vec<D, Counted> r = separation(model.pair, Vec<D, Counted>{} - of_lanes<D>(operations));
+    FluidPair<D, Counted> pair;
+    pair.v = Vec<D, Counted>{} - of_lanes<D>(operations);
+    pair.v2 = Counted() + Counted::of_lanes(1.0, operations);
+    pair.pv2 = Counted() + Counted::of_lanes(1.0, operations);
+    fluid_pair<Kernel, transport>(model.pair, pair, r, q, Counted(1.0));
+    operations.integers += 2 * components;    // to the partner and to the centre
+    work.loads = 2 * D + 2 + components + 2;  // places, velocities, volume terms, sums; the square and its root
+    work.stores = components + 1;             // sums; the root
+  });
+  return work;
+}
+
+template <int D>
+class Report {
+ public:
+  Report(std::string name, std::uint64_t side) : name_(std::move(name)), parts_(side) {}
+
+  void print(int rounds) {
+    const Census census = parts_.census();
+    const double owned = static_cast<double>(parts_.setup().owned), listed = static_cast<double>(census.listed),
+                 kept = static_cast<double>(census.kept), pairs = static_cast<double>(census.pairs),
+                 candidates = static_cast<double>(census.candidates);
+    figure("particles", owned);
+    figure("pairs", pairs);
+    figure("pairs_per_particle", pairs / owned);
+    figure("blocks_listed_per_particle", listed / owned);
+    figure("blocks_kept_per_particle", kept / owned);
+    ratio("candidates_inside", pairs / candidates);
+    ratio("blocks_kept", kept / listed);
+    ratio("lanes_used_listed", candidates / listed / lane_count);
+    ratio("lanes_used_kept", pairs / kept / lane_count);
+    constexpr double block = sizeof(PairBlock<D>) / lane_count, state = 8.0 * (2 * D + 1);
+    figure("bytes_per_particle_block", block);
+    // State read and block written, block read and written; more where a block leaves the cache between two rows.
+    figure("bytes_per_particle_memory", state + 3.0 * block);
+    print_work("distances", work_of_distances(parts_.setup().fluid.model));
+    print_work("pairs", work_of_pairs(parts_.setup().fluid.model));
+    if (rounds > 0)
+      print_times(rounds, pairs);
+    else
+      for (const auto& part : all_parts_) part.second();
+  }
+
+ private:
+  void print_work(const std::string& part, const BlockWork& work) const {
+    figure("block_" + part + ".multiplications", work.operations.multiplications);
+    figure("block_" + part + ".additions", work.operations.additions);
+    figure("block_" + part + ".roots", work.operations.roots);
+    figure("block_" + part + ".integers", work.operations.integers);
+    figure("block_" + part + ".loads", work.loads);
+    figure("block_" + part + ".stores", work.stores);
+  }
+  void print_times(int rounds, double pairs) {
+    std::vector<std::vector<double>> times(all_parts_.size());
+    for (int round = 0; round < rounds; ++round)
+      for (std::size_t part = 0; part < all_parts_.size(); ++part) {
+        const double before = bench::computing_seconds();
+        all_parts_[part].second();
+        times[part].push_back((bench::computing_seconds() - before) / pairs * 1e9);
+      }
+    for (std::size_t part = 0; part < all_parts_.size(); ++part)
+      figure("ns_per_pair_" + all_parts_[part].first, bench::median(times[part]));
+  }
+  void figure(const std::string& figure, double value) const {
+    fmt::print("figure {}.{} {:.6g}\n", name_, figure, value);
+  }
+  void ratio(const std::string& ratio, double value) const { fmt::print("ratio {}.{} {:.6g}\n", name_, ratio, value); }
+
+  std::string name_;
+  Parts<D> parts_;
+  std::vector<std::pair<std::string, std::function<void()>>> all_parts_{
+      {"sort", [&] { parts_.sort(); }},
+      {"lay_out", [&] { parts_.lay_out(); }},
+      {"lists", [&] { parts_.lists(); }},
+      {"lists_and_distances", [&] { parts_.lists_and_distances(); }},
+      {"whole_pass", [&] { parts_.whole_pass(); }}};
+};
+
+}  // namespace
+}  // namespace mappm
+
+int main(int argc, char** argv) {
+  if (argc != 4) {
+    fmt::print(stderr, "usage: bench-pair_census SIDE_2D SIDE_3D ROUNDS\n");
+    return 2;
+  }
+  const int rounds = std::atoi(argv[3]);
+  mappm::Report<2>("fluid_2d_39", std::strtoull(argv[1], nullptr, 10)).print(rounds);
+  mappm::Report<3>("fluid_3d_77", std::strtoull(argv[2], nullptr, 10)).print(rounds);
+}
