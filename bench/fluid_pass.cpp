@@ -13,9 +13,8 @@ template <int D>
 void pair_pass(benchmark::State& state) {
   bench::SortedFluid<D> setup(D == 2 ? 320 : 48, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   FluidPass<D> pass(setup.fluid.model, 1);
-  std::vector<NeighbourSums<D>> frozen_sums;
   for (auto _ : state) {
-    pass.sum(setup.particles, setup.grid, {}, frozen_sums);
+    pass.sum(setup.particles, setup.grid);
     benchmark::DoNotOptimize(pass.sums(0));
   }
   const auto rate = [&](std::uint64_t count) {

@@ -69,10 +69,7 @@ class Parts {
 
  private:
   void lay_blocks() { blocks_.fill(setup_.fluid.model, setup_.particles, setup_.grid); }
-  void sum() {
-    std::vector<NeighbourSums<D>> frozen_sums;
-    pass_.sum(setup_.particles, setup_.grid, {}, frozen_sums);
-  }
+  void sum() { pass_.sum(setup_.particles, setup_.grid); }
   void measure_distances(PartnerLists<D>& lists) {
     lists.template measure<false>(setup_.fluid.model.pair, blocks_.data());
   }

@@ -49,7 +49,7 @@ class Point:
 
     @property
     def work(self) -> float:
-        return sum(seconds for name, seconds in self.phases.items() if name not in ("exchange", "output", "steps"))
+        return sum(seconds for name, seconds in self.phases.items() if name not in ("exchange", "copies", "output", "steps"))
 
 
 def point_of(name: str, finished: Run) -> Point:

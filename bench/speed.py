@@ -161,10 +161,14 @@ def measure(quick: bool, repeats: int, folder: Path, say: Callable[[str], None])
     return figures, provenance(Run(folder / "mappm"))
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(prog="python3 -m bench.speed", description=__doc__,
+Measure = Callable[[bool, int, Path, Callable[[str], None]], tuple[dict[str, float], dict[str, str]]]
+
+
+def run_benchmark(name: str, words: str, measure: Measure) -> int:
+    """Reads the command line of `python3 -m bench.NAME`, measures, prints and keeps the figures. 1 where a measurement is broken."""
+    parser = argparse.ArgumentParser(prog=f"python3 -m bench.{name}", description=words,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="small fluids, which take seconds: to see that all works")
+    parser.add_argument("--quick", action="store_true", help="small scenes, which take seconds: to see that all works")
     parser.add_argument("--repeats", type=int, help="rounds, at least 1; default 7, with --quick 1")
     parser.add_argument("--json", type=Path, help="also keep the figures in this file")
     parser.add_argument("--out", type=Path, help="folder of the runs (default: one that is removed)")
@@ -177,20 +181,25 @@ def main() -> int:
             figures, origin = measure(options.quick, repeats, options.out or Path(scratch),
                                       lambda text: print(text, file=sys.stderr, flush=True))
         except (Broken, SolverError, Failed) as error:
-            print(f"speed: {error}", file=sys.stderr)
+            print(f"{name}: {error}", file=sys.stderr)
             return 1
-    for name, value in figures.items():
-        print(f"{name} {value:.4g}")
+    for figure, value in figures.items():
+        print(f"{figure} {value:.4g}")
     if options.json:
-        command = "python3 -m bench.speed" + (" --quick" if options.quick else "") + f" --repeats {repeats}"
+        command = f"python3 -m bench.{name}" + (" --quick" if options.quick else "") + f" --repeats {repeats}"
         table = {"date": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC", "command": command, "commit": origin["commit"],
                  "host": origin["host"], "figures": figures}
         options.json.parent.mkdir(parents=True, exist_ok=True)
         options.json.write_text(json.dumps(table, indent=1) + "\n")
-    if not installed():
+    return 0
+
+
+def main() -> int:
+    code = run_benchmark("speed", __doc__, measure)
+    if code == 0 and not installed():
         print(f"{CODE} is not installed: no ratio to it. apt-get install liggghts", file=sys.stderr)
         return SKIPPED_CODE
-    return 0
+    return code
 
 
 if __name__ == "__main__":

@@ -274,6 +274,7 @@ void RunLoop<D, E>::remember(const Totals<D>& totals) {
   record_.end_momentum = list(totals.momentum);
   record_.outside_impulse = list(totals.outside_impulse);
   record_.particles = totals.particles();
+  record_.frozen_particles = static_cast<std::uint64_t>(totals.frozen_count);
   record_.solids = static_cast<std::uint64_t>(totals.sp_count);
 }
 

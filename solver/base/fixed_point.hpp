@@ -39,7 +39,7 @@ inline Int128 to_fixed_wide(double x) {
   const double magnitude = std::fabs(x);
   if (magnitude >= box_quanta) return static_cast<Int128>(x);
   const double rounded = (magnitude + box_quanta) - box_quanta;
-  return static_cast<Int128>(std::copysign(rounded, x));
+  return static_cast<std::int64_t>(std::copysign(rounded, x));
 }
 
 /// The nearest multiple of a quantum (a power of two): how a value enters the integer state.

@@ -78,6 +78,7 @@ std::string run_record_text(const RunRecord& record) {
   json["borders"] = record.borders;
   json["threads"] = record.threads;
   json["particles"] = record.particles;
+  json["frozen_particles"] = record.frozen_particles;
   json["solids"] = record.solids;
   json["particle_steps_per_second"] = record.rate;
   json["state"] = record.state;

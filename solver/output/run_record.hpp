@@ -31,10 +31,10 @@ struct RunRecord {
   int ranks = 1, threads = 1;
   std::vector<int> domains;
   std::vector<std::vector<double>> borders;  // of the domains at the end, per axis, from 0 to the side; scene units
-  std::uint64_t particles = 0, solids = 0;   // PPs and FPs; SPs
-  double rate = 0.0;                         // particle-steps/s
-  std::string state;                         // running, finished, stopped, input error, range error
-  std::string message;                       // of the error, or how to resume
+  std::uint64_t particles = 0, frozen_particles = 0, solids = 0;  // PPs and FPs; FPs; SPs
+  double rate = 0.0;                                              // particle-steps/s
+  std::string state;    // running, finished, stopped, input error, range error
+  std::string message;  // of the error, or how to resume
 };
 
 /// The record as JSON text; commit, compiler, flags, host and date are added.

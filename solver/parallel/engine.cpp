@@ -1,6 +1,6 @@
 #include "parallel/engine.hpp"
 
-#include <chrono>
+#include <algorithm>
 #include <utility>
 
 #include "parallel/redistribute.hpp"
@@ -8,23 +8,6 @@
 namespace mappm {
 
 namespace {
-
-enum Phase { exchange_phase, sort_phase, pair_phase, solid_phase, integrate_phase };
-
-/// Adds the seconds since its construction, or since the last call, to a phase.
-class Stopwatch {
- public:
-  explicit Stopwatch(double (&seconds)[5]) : seconds_(seconds) {}
-  void end(Phase phase) {
-    const auto now = std::chrono::steady_clock::now();
-    seconds_[phase] += std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
-
- private:
-  double (&seconds_)[5];
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 /// Cells to a cutoff, by measurement (bench/fluid_pass.cpp, 39 and 77 neighbours): narrow along a row, where they only
 /// order its particles; across, more rows would leave more lanes empty.
@@ -61,6 +44,7 @@ ParallelEngine<D>::ParallelEngine(const Model<D>& model, const Domains<D>& domai
       domains_(domains),
       options_(options),
       pass_(model, options.threads),
+      densities_(model),
       state_(std::move(state)) {
   rebalance();
 }
@@ -91,15 +75,6 @@ void ParallelEngine<D>::start_domains() {
 }
 
 template <int D>
-PhaseSeconds ParallelEngine<D>::phase_seconds() const {
-  return {{"exchange", seconds_[exchange_phase]},
-          {"sort", seconds_[sort_phase]},
-          {"pairs", seconds_[pair_phase]},
-          {"solids", seconds_[solid_phase]},
-          {"integrate", seconds_[integrate_phase]}};
-}
-
-template <int D>
 Traffic ParallelEngine<D>::traffic() const {
   Traffic sum = before_;
   if (halo_ == nullptr) return sum;
@@ -115,41 +90,44 @@ Traffic ParallelEngine<D>::traffic() const {
 template <int D>
 void ParallelEngine<D>::step() {
   if (options_.rebalance > 0 && state_.step > 0 && state_.step % options_.rebalance == 0) rebalance();
-  Stopwatch watch(seconds_);
-  halo_->exchange(state_, copies_);
-  watch.end(exchange_phase);
+  watch_.start();
+  halo_->exchange(state_, copies_, watch_);
   place_solids();
-  watch.end(solid_phase);
-  grid_.sort(state_.fluid);
-  watch.end(sort_phase);
-  pass_.sum(state_.fluid, grid_, frozen_, frozen_sums_);
-  watch.end(pair_phase);
+  watch_.end(Phase::solids);
+  if (model_.terms.fluid) {
+    grid_.sort(state_.fluid);
+    watch_.end(Phase::sort);
+    pass_.sum(state_.fluid, grid_);
+    watch_.end(Phase::pairs);
+    pass_.add_frozen(grid_, solids_.frozen, frozen_sums_);
+    watch_.end(Phase::frozen_pairs);
+  }
   explain_pairs();
   if (model_.terms.solids) {
-    sum_frozen_densities();
+    if (model_.terms.fluid) densities_.add(solids_, *levels_, frozen_sums_);
     std::vector<HomeReport<D>> reports = collect_reports();
-    watch.end(solid_phase);
+    watch_.end(Phase::solids);
     reports = halo_->send_home(copies_, std::move(reports));
-    watch.end(exchange_phase);
+    watch_.end(Phase::copies);
     move_solids(reports);
-    watch.end(solid_phase);
+    watch_.end(Phase::solids);
   }
   move_fluid();
   ++state_.step;
-  watch.end(integrate_phase);
+  watch_.end(Phase::integrate);
 }
 
 template <int D>
 void ParallelEngine<D>::place_solids() {
-  bodies_.clear();
-  frozen_.clear();
+  solids_.clear();
   if (!model_.terms.solids) return;
   levels_->clear();
   const auto add = [&](const Solid<D>& solid) {
-    const auto index = static_cast<std::uint32_t>(bodies_.size());
-    bodies_.push_back(solid_in_step(model_, solid));
-    levels_->add(index, in_cutoffs(model_, solid.x), bodies_.back().shape->reach);
-    if (model_.terms.fluid) place_frozen(model_, bodies_.back(), index, halo_->reach(), frozen_);
+    const auto index = static_cast<std::uint32_t>(solids_.bodies.size());
+    const SolidInStep<D>& body = solids_.bodies.emplace_back(solid_in_step(model_, solid));
+    levels_->add(index, in_cutoffs(model_, solid.x), body.shape->reach);
+    if (model_.terms.fluid) place_frozen(model_, body, index, halo_->reach(), solids_.frozen);
+    solids_.first.push_back(solids_.frozen.size());
   };
   for (const Solid<D>& solid : state_.solids) add(solid);
   for (const Solid<D>& solid : copies_) add(solid);
@@ -161,53 +139,17 @@ void ParallelEngine<D>::explain_pairs() {
   faces_.clear();
   if (options_.faces > 0 && (state_.step + 1) % options_.faces == 0) {
     const FaceLedger<D> ledger(model_, domains_, halo_->region(), grid_);
-    faces_ = ledger.faces(state_.fluid, frozen_);
-    faces_.push_back({all_partners, ledger.received(state_.fluid, pass_, frozen_, frozen_sums_)});
+    faces_ = ledger.faces(state_.fluid, solids_.frozen);
+    faces_.push_back({all_partners, ledger.received(state_.fluid, pass_, solids_.frozen, frozen_sums_)});
   }
   trace_.reset();
   if (!traced_particle_.has_value()) return;
-  if (const auto partners = pass_.trace(state_.fluid, grid_, frozen_, *traced_particle_)) {
+  if (const auto partners = pass_.trace(state_.fluid, grid_, solids_.frozen, *traced_particle_)) {
     trace_ = StepTrace<D>{state_.step, *traced_particle_, *partners};
     for (PartnerTrace<D>& partner : trace_->partners)
-      if (partner.frozen) partner.id = bodies_[partner.id].solid->id;
+      if (partner.frozen) partner.id = solids_.bodies[partner.id].solid->id;
   }
   traced_particle_.reset();
-}
-
-/// An FP also counts the matter of other solids within rcut. Only FPs of solids that near each other are looked at.
-template <int D>
-void ParallelEngine<D>::sum_frozen_densities() {
-  if (frozen_.empty()) return;  // solids alone: no FP is placed
-  std::vector<std::size_t> first(bodies_.size() + 1, frozen_.size());
-  for (std::size_t k = frozen_.size(); k-- > 0;) first[frozen_[k].solid] = k;
-  for (std::size_t b = bodies_.size(); b-- > 0;) first[b] = std::min(first[b], first[b + 1]);
-  const auto near = [&](std::size_t body, const SolidInStep<D>& other) {
-    std::vector<std::size_t> chosen;
-    const double reach = other.shape->reach + 1.0;
-    for (std::size_t k = first[body]; k < first[body + 1]; ++k) {
-      const Vec<D, double> r = separation(model_.pair, frozen_[k].place.x - other.solid->x);
-      if (dot(r, r) < reach * reach) chosen.push_back(k);
-    }
-    return chosen;
-  };
-  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
-    for (std::uint32_t a = 0; a < bodies_.size(); ++a) {
-      const SolidInStep<D>& one = bodies_[a];
-      levels_->for_each_near(in_cutoffs(model_, one.solid->x), one.shape->reach, 1.0, [&](std::uint32_t b) {
-        const SolidInStep<D>& other = bodies_[b];
-        if (one.solid->group == other.solid->group) return;
-        const std::vector<std::size_t> others = near(b, one);
-        if (others.empty()) return;
-        for (const std::size_t k : near(a, other))
-          for (const std::size_t n : others) {
-            const FrozenInStep<D>&fp = frozen_[k], &partner = frozen_[n];
-            const Vec<D, double> r = separation(model_.pair, fp.place.x - partner.place.x);
-            frozen_sums_[k].density +=
-                pair_density<Kernel>(model_.pair, r, fp.place.v - partner.place.v, cut_distance(dot(r, r)));
-          }
-      });
-    }
-  });
 }
 
 /// Sums the FPs in this region onto their solids: owned ones into `loads_`, copies into reports for their owners.
@@ -217,8 +159,8 @@ std::vector<HomeReport<D>> ParallelEngine<D>::collect_reports() {
   loads_.assign(owned, {});
   std::vector<HomeReport<D>> reports(copies_.size());
   for (std::size_t c = 0; c < copies_.size(); ++c) reports[c].solid = copies_[c].id;
-  for (std::size_t k = 0; k < frozen_.size(); ++k) {
-    const FrozenInStep<D>& fp = frozen_[k];
+  for (std::size_t k = 0; k < solids_.frozen.size(); ++k) {
+    const FrozenInStep<D>& fp = solids_.frozen[k];
     if (!halo_->region().contains(fp.place.x)) continue;
     const double density = frozen_density(fp, frozen_sums_[k].density);
     if (fp.solid < owned) {
@@ -246,9 +188,9 @@ void ParallelEngine<D>::move_solids(const std::vector<HomeReport<D>>& from_other
   }
   if (model_.terms.contact)
     for (std::size_t a = 0; a < state_.solids.size(); ++a) {
-      const SolidInStep<D>& one = bodies_[a];
+      const SolidInStep<D>& one = solids_.bodies[a];
       levels_->for_each_near(in_cutoffs(model_, one.solid->x), one.shape->reach, 0.0, [&](std::uint32_t b) {
-        const SolidInStep<D>& other = bodies_[b];
+        const SolidInStep<D>& other = solids_.bodies[b];
         if (one.solid->id != other.solid->id && is_nearest_image(*one.solid, *other.solid))
           add_contacts(model_, one, other, loads_[a]);
       });

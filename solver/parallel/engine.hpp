@@ -10,7 +10,9 @@
 #include "parallel/domains.hpp"
 #include "parallel/face_ledger.hpp"
 #include "parallel/fluid_pass.hpp"
+#include "parallel/frozen_densities.hpp"
 #include "parallel/halo.hpp"
+#include "parallel/stopwatch.hpp"
 #include "particles/cell_levels.hpp"
 #include "particles/engine.hpp"
 
@@ -32,7 +34,7 @@ class ParallelEngine {
   void step();
   State<D>& state() { return state_; }
   const std::string& range_error() const { return range_error_; }
-  PhaseSeconds phase_seconds() const;
+  PhaseSeconds phase_seconds() const { return watch_.seconds(); }
   Traffic traffic() const;
   const Domains<D>& domains() const { return domains_; }
   /// The ledger of the faces in the last step, in the order of partners, then the entry of all partners; empty where
@@ -49,7 +51,6 @@ class ParallelEngine {
   void start_domains();
   void place_solids();
   void explain_pairs();
-  void sum_frozen_densities();
   void move_fluid();
   void report(RangeFault fault, std::uint32_t i, const Vec<D, double>& v, const NeighbourSums<D>& sums);
   std::vector<HomeReport<D>> collect_reports();
@@ -63,12 +64,12 @@ class ParallelEngine {
   CellGrid<D> grid_;
   std::unique_ptr<CellLevels<D>> levels_;
   FluidPass<D> pass_;
+  FrozenDensities<D> densities_;
   State<D> state_;
 
   // Of the present step:
   std::vector<Solid<D>> copies_;
-  std::vector<SolidInStep<D>> bodies_;  // owned solids, then copies
-  std::vector<FrozenInStep<D>> frozen_;
+  PlacedSolids<D> solids_;  // owned, then copies
   std::vector<NeighbourSums<D>> frozen_sums_;
   std::vector<SolidLoad<D>> loads_;  // of owned solids
 
@@ -77,7 +78,7 @@ class ParallelEngine {
   MaybeTrace<D> trace_;
 
   std::string range_error_;
-  double seconds_[5] = {};
+  Stopwatch watch_;
   Traffic before_;  // of the domains before the present ones
 };
 

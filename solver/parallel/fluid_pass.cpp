@@ -93,8 +93,7 @@ std::vector<std::vector<std::uint32_t>> frozen_by_plane(const CellGrid<D>& grid,
 }
 
 template <int D>
-void FluidPass<D>::sum(FluidParticles<D>& fluid, const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
-                       std::vector<NeighbourSums<D>>& frozen_sums) {
+void FluidPass<D>::sum(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
   blocks_.fill(model_, fluid, grid);
   half_rows_ = row_offsets(grid, true);
   all_rows_ = row_offsets(grid, false);
@@ -102,8 +101,15 @@ void FluidPass<D>::sum(FluidParticles<D>& fluid, const CellGrid<D>& grid, const 
     for_each_band(grid, [&](int first, int last, Search& search) {
       for_each_row(grid, first, last, [&](const Vec<D, int>& row) { sum_row<Kernel, transport>(grid, row, search); });
     });
-    frozen_sums.assign(frozen.size(), {});
-    if (frozen.empty()) return;
+  });
+}
+
+template <int D>
+void FluidPass<D>::add_frozen(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
+                              std::vector<NeighbourSums<D>>& frozen_sums) {
+  frozen_sums.assign(frozen.size(), {});
+  if (frozen.empty()) return;
+  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     const std::vector<std::vector<std::uint32_t>> by_plane = frozen_by_plane(grid, frozen);
     for_each_band(grid, [&](int first, int last, Search& search) {
       for (int plane = first; plane < last; ++plane)

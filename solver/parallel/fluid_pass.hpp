@@ -20,17 +20,21 @@ class FluidPass {
  public:
   FluidPass(const Model<D>& model, int threads) : model_(model), threads_(threads) {}
 
-  /// Sums over all neighbours of the owned PPs in `fluid`, which is in the order of `grid`; sums of ghosts are partial
-  /// and meaningless. `frozen` are all FPs in reach; `frozen_sums[k]` becomes complete where FP k lies in the region.
-  void sum(FluidParticles<D>& fluid, const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
-           std::vector<NeighbourSums<D>>& frozen_sums);
+  /// Sums over all PPs near the owned PPs in `fluid`, which is in the order of `grid`; sums of ghosts are partial and
+  /// meaningless.
+  void sum(FluidParticles<D>& fluid, const CellGrid<D>& grid);
+  /// After `sum`: adds the pairs of PPs and FPs. `frozen` are all FPs in reach; `frozen_sums[k]` becomes the sum over
+  /// PPs where FP k lies in the region.
+  void add_frozen(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
+                  std::vector<NeighbourSums<D>>& frozen_sums);
 
   /// Sums of PP i, which lies in this plane of cells.
   NeighbourSums<D> sums(std::uint32_t i, int plane) const { return blocks_.sums(i + blocks_.gap(plane)); }
   NeighbourSums<D> sums(std::uint32_t i) const { return blocks_.sums(blocks_.place(i)); }
 
-  /// After `sum` and with its arguments: what each partner gave to the PP with this id that lies in the region, every
-  /// pair of `sum` taken alone; none where there is no such PP. For an FP `id` is the index of its solid in the step.
+  /// After both and with their arguments: what each partner gave to the PP with this id that lies in the region, every
+  /// pair of the pass taken alone; none where there is no such PP. For an FP `id` is the index of its solid in the
+  /// step.
   std::optional<std::vector<PartnerTrace<D>>> trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
                                                     const std::vector<FrozenInStep<D>>& frozen, std::uint64_t particle);
 

@@ -33,6 +33,7 @@ Halo<D>::Halo(const Model<D>& model, const Domains<D>& domains, const Communicat
       reach_(widened(model, region_, 1.0)),
       solid_reach_(widened(model, region_, solid_margin(model))),
       interior_(widened(model, region_, -1.0)),
+      solid_interior_(widened(model, region_, -solid_margin(model))),
       images_(domains.images(communicator.rank())),
       partners_(domains.partners(communicator.rank())),
       out_(partners_.size()),
@@ -68,37 +69,17 @@ Vec<D, double> Halo<D>::in_frame(Vec<D, double> x) const {
 }
 
 template <int D>
-void Halo<D>::exchange(State<D>& state, std::vector<Solid<D>>& copies) {
+void Halo<D>::exchange(State<D>& state, std::vector<Solid<D>>& copies, Stopwatch& watch) {
   pack_fluid(state.fluid);
-  for (Solid<D>& solid : state.solids) solid.x = in_frame(solid.x);
-  std::vector<Solid<D>> here;
-  copies.clear();
-  for (std::size_t n = 0; n < images_.size(); ++n) {
-    Buffer& buffer = out_[static_cast<std::size_t>(images_[n].partner)];
-    std::uint64_t count = 0;
-    for (const Solid<D>& solid : state.solids) count += image_solid_reach_[n].contains(solid.x) ? 1 : 0;
-    put(buffer, count);
-    for (const Solid<D>& solid : state.solids)
-      if (image_solid_reach_[n].contains(solid.x)) pack_solid(solid, n);
-  }
+  watch.end(Phase::exchange);
+  pack_solids(state.solids);
+  watch.end(Phase::copies);
   swap_messages();
-  for (Solid<D>& solid : state.solids) {
-    if (region_.contains(solid.x))
-      here.push_back(std::move(solid));
-    else if (solid_reach_.contains(solid.x))
-      copies.push_back(std::move(solid));
-  }
-  for (std::size_t n = 0; n < partners_.size(); ++n) {
-    BufferReader reader(in_[n]);
-    unpack_fluid(reader, state.fluid);
-    while (!reader.at_end())
-      for (auto count = reader.get<std::uint64_t>(); count > 0; --count) {
-        Solid<D> solid = get_solid(reader, model_);
-        (region_.contains(solid.x) ? here : copies).push_back(std::move(solid));
-      }
-  }
-  std::sort(here.begin(), here.end(), [](const Solid<D>& a, const Solid<D>& b) { return a.id < b.id; });
-  state.solids = std::move(here);
+  std::vector<BufferReader> readers(in_.begin(), in_.end());
+  for (BufferReader& reader : readers) unpack_fluid(reader, state.fluid);
+  watch.end(Phase::exchange);
+  unpack_solids(readers, state.solids, copies);
+  watch.end(Phase::copies);
 }
 
 /// Message to each partner: number of PPs, then their ids, then field by field. PPs near the border of the region, or
@@ -145,6 +126,46 @@ void Halo<D>::unpack_fluid(BufferReader& reader, FluidParticles<D>& fluid) {
     for (std::size_t i = first; i < fluid.size(); ++i) values[i] = reader.get<double>();
 }
 
+/// Behind the PPs, for each image: number of solids, then these.
+template <int D>
+void Halo<D>::pack_solids(std::vector<Solid<D>>& solids) {
+  std::vector<const Solid<D>*> outward;
+  for (Solid<D>& solid : solids) {
+    solid.x = in_frame(solid.x);
+    if (!solid_interior_.contains(solid.x)) outward.push_back(&solid);
+  }
+  for (std::size_t n = 0; n < images_.size(); ++n) {
+    Buffer& buffer = out_[static_cast<std::size_t>(images_[n].partner)];
+    std::uint64_t count = 0;
+    for (const Solid<D>* solid : outward) count += image_solid_reach_[n].contains(solid->x) ? 1 : 0;
+    put(buffer, count);
+    for (const Solid<D>* solid : outward)
+      if (image_solid_reach_[n].contains(solid->x)) pack_solid(*solid, n);
+  }
+}
+
+/// Sorts what was here and what came into solids owned and copies.
+template <int D>
+void Halo<D>::unpack_solids(std::vector<BufferReader>& readers, std::vector<Solid<D>>& solids,
+                            std::vector<Solid<D>>& copies) const {
+  std::vector<Solid<D>> here;
+  copies.clear();
+  for (Solid<D>& solid : solids) {
+    if (region_.contains(solid.x))
+      here.push_back(std::move(solid));
+    else if (solid_reach_.contains(solid.x))
+      copies.push_back(std::move(solid));
+  }
+  for (BufferReader& reader : readers)
+    while (!reader.at_end())
+      for (auto count = reader.get<std::uint64_t>(); count > 0; --count) {
+        Solid<D> solid = get_solid(reader, model_);
+        (region_.contains(solid.x) ? here : copies).push_back(std::move(solid));
+      }
+  std::sort(here.begin(), here.end(), [](const Solid<D>& a, const Solid<D>& b) { return a.id < b.id; });
+  solids = std::move(here);
+}
+
 /// The new owner receives the densities of all FPs and the contacts; a copy only the densities it can need.
 template <int D>
 void Halo<D>::pack_solid(const Solid<D>& solid, std::size_t image) {
@@ -152,11 +173,10 @@ void Halo<D>::pack_solid(const Solid<D>& solid, std::size_t image) {
   std::vector<std::uint32_t> frozen;
   if (migrates) {
     frozen = all_frozen(solid);
-  } else {
-    const SolidInStep<D> body = solid_in_step(model_, solid);
+  } else if (may_reach(model_, solid, image_reach_[image])) {
+    const Shape<D>& shape = model_.shapes[solid.shape];
     for (std::uint32_t k = 0; k < solid.density.size(); ++k)
-      if (image_reach_[image].contains(place(solid, body.velocity, body.shape->frozen[k], model_.pair.length).x))
-        frozen.push_back(k);
+      if (image_reach_[image].contains(place_of(solid, shape.frozen[k], model_.pair.length))) frozen.push_back(k);
   }
   put_solid(out_[static_cast<std::size_t>(images_[image].partner)], solid, solid.x + images_[image].shift, frozen,
             migrates);

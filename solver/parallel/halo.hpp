@@ -12,6 +12,7 @@
 #include "parallel/communicator.hpp"
 #include "parallel/domains.hpp"
 #include "parallel/message.hpp"
+#include "parallel/stopwatch.hpp"
 #include "particles/engine.hpp"
 #include "particles/solid_step.hpp"
 
@@ -36,8 +37,9 @@ class Halo {
   const Region<D>& reach() const { return reach_; }
 
   /// On entry `state` holds what this process owned before the particles moved, at their new positions in the box. On
-  /// return it holds its particles and ghosts, all in its frame, and its solids; `copies` holds copies of solids.
-  void exchange(State<D>& state, std::vector<Solid<D>>& copies);
+  /// return it holds its particles and ghosts, all in its frame, and its solids; `copies` holds copies of solids. The
+  /// message itself counts as one of PPs.
+  void exchange(State<D>& state, std::vector<Solid<D>>& copies, Stopwatch& watch);
 
   /// Delivers reports to the owners of the solids; returns those for solids owned here.
   std::vector<HomeReport<D>> send_home(const std::vector<Solid<D>>& copies, std::vector<HomeReport<D>>&& reports);
@@ -47,15 +49,18 @@ class Halo {
  private:
   Vec<D, double> in_frame(Vec<D, double> x) const;
   void pack_fluid(FluidParticles<D>& fluid);
+  void pack_solids(std::vector<Solid<D>>& solids);
   void pack_solid(const Solid<D>& solid, std::size_t image);
   void unpack_fluid(BufferReader& reader, FluidParticles<D>& fluid);
+  void unpack_solids(std::vector<BufferReader>& readers, std::vector<Solid<D>>& solids,
+                     std::vector<Solid<D>>& copies) const;
   void swap_messages();
 
   const Model<D>& model_;
   const Domains<D>& domains_;
   const Communicator& communicator_;
   Region<D> region_, reach_, solid_reach_;
-  Region<D> interior_;  // particles here are needed by nobody else
+  Region<D> interior_, solid_interior_;  // particles and solids here are needed by nobody else
   std::vector<Image<D>> images_;
   std::vector<Region<D>> image_reach_;  // margin of rcut around each image
   std::vector<Region<D>> image_solid_reach_;

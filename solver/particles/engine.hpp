@@ -12,7 +12,7 @@
 
 namespace mappm {
 
-/// Wall seconds spent so far, by phase of the step ("exchange", "sort", "pairs", "solids", "integrate").
+/// Wall seconds spent so far, by phase of the step ("pairs", "integrate", ...; parallel/stopwatch.hpp).
 using PhaseSeconds = std::vector<std::pair<std::string, double>>;
 
 /// What one process sent to others so far.

@@ -19,10 +19,22 @@ struct FrozenInStep {
   std::uint32_t index = 0;  // in its shape
 };
 
+/// False where no FP of a solid lies in `region`; a copy that is there for its contacts alone has none.
+template <int D>
+bool may_reach(const Model<D>& model, const Solid<D>& solid, const Region<D>& region) {
+  const double reach = (1.0 + 1e-6) * model.shapes[solid.shape].reach;  // rounding hides no FP
+  for (int axis = 0; axis < D; ++axis) {
+    const double quanta = reach / model.pair.length[axis];
+    if (solid.x[axis] + quanta < region.low[axis] || solid.x[axis] - quanta >= region.high[axis]) return false;
+  }
+  return true;
+}
+
 /// Appends the FPs of one solid that lie in `region` (in the frame of the solid's copy).
 template <int D>
 void place_frozen(const Model<D>& model, const SolidInStep<D>& body, std::uint32_t solid, const Region<D>& region,
                   std::vector<FrozenInStep<D>>& to) {
+  if (!may_reach(model, *body.solid, region)) return;
   const auto& frozen = body.shape->frozen;
   for (std::uint32_t k = 0; k < frozen.size(); ++k) {
     const PlacedFrozen<D> placed = place(*body.solid, body.velocity, frozen[k], model.pair.length);

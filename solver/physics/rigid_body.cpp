@@ -28,6 +28,12 @@ AngularVec<D, double> angular_velocity(const Solid<D>& solid, const Shape<D>& sh
     return rotate(solid.orientation, multiply_inverse_inertia(shape, rotate_back(solid.orientation, momentum)));
 }
 
+template <int D>
+Vec<D, double> displaced(Vec<D, double> x, const Vec<D, double>& offset, const Vec<D, double>& length) {
+  for (int axis = 0; axis < D; ++axis) x[axis] += static_cast<double>(to_fixed(offset[axis] / length[axis]));
+  return x;
+}
+
 }  // namespace
 
 template <int D>
@@ -44,12 +50,16 @@ PlacedFrozen<D> place(const Solid<D>& solid, const RigidVelocity<D>& velocity, c
                       const Vec<D, double>& length) {
   const Vec<D, double> offset = rotate(solid.orientation, frozen.offset);
   PlacedFrozen<D> placed;
-  for (int axis = 0; axis < D; ++axis)
-    placed.x[axis] = solid.x[axis] + static_cast<double>(to_fixed(offset[axis] / length[axis]));
+  placed.x = displaced(solid.x, offset, length);
   placed.v = velocity.linear + rotational_velocity<D>(velocity.angular, offset);
   placed.normal = rotate(solid.orientation, frozen.normal);
   placed.lever = offset + frozen.depth * placed.normal;
   return placed;
+}
+
+template <int D>
+Vec<D, double> place_of(const Solid<D>& solid, const FrozenParticle<D>& frozen, const Vec<D, double>& length) {
+  return displaced(solid.x, rotate(solid.orientation, frozen.offset), length);
 }
 
 template <int D>
@@ -100,6 +110,8 @@ template PlacedFrozen<2> place(const Solid<2>&, const RigidVelocity<2>&, const F
                                const Vec<2, double>&);
 template PlacedFrozen<3> place(const Solid<3>&, const RigidVelocity<3>&, const FrozenParticle<3>&,
                                const Vec<3, double>&);
+template Vec<2, double> place_of(const Solid<2>&, const FrozenParticle<2>&, const Vec<2, double>&);
+template Vec<3, double> place_of(const Solid<3>&, const FrozenParticle<3>&, const Vec<3, double>&);
 template AngularVec<2, Int128> torque_impulse<2>(const Vec<2, double>&, const Vec<2, double>&);
 template AngularVec<3, Int128> torque_impulse<3>(const Vec<3, double>&, const Vec<3, double>&);
 template AngularVec<2, Int128> stress_couple(double, const Shape<2>&, const AngularVec<2, double>&, double);

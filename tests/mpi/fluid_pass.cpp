@@ -44,8 +44,8 @@ std::vector<NeighbourSums<2>> sums_over(const Model<2>& model, FluidParticles<2>
     values.resize(count);
   }
   FluidPass<2> pass(model, 1);
-  std::vector<NeighbourSums<2>> frozen_sums, result;
-  pass.sum(fluid, grid, {}, frozen_sums);
+  std::vector<NeighbourSums<2>> result;
+  pass.sum(fluid, grid);
   for (std::uint32_t i = 0; i < fluid.size(); ++i) result.push_back(pass.sums(i));
   return result;
 }
@@ -100,8 +100,7 @@ void expect_sums_of_all_pairs(const char* scene, int along, int across, int thre
   grid.fit(region, model.pair.length, cells);
   grid.sort(fluid);
   FluidPass<D> pass(model, threads);
-  std::vector<NeighbourSums<D>> frozen_sums;
-  pass.sum(fluid, grid, {}, frozen_sums);
+  pass.sum(fluid, grid);
   const auto place = [&](std::size_t i) {
     Vec<D, double> x;
     for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];

@@ -210,7 +210,8 @@ void expect_brute_force_halo(const Built<D>& built, const Domains<D>& domains) {
   State<D> state = share_of(global, before, region);
   Halo<D> halo(model, domains, world());
   std::vector<Solid<D>> copies;
-  halo.exchange(state, copies);
+  Stopwatch watch;
+  halo.exchange(state, copies, watch);
 
   const Region<D> reach = widened(model, region, 1.0);
   EXPECT_EQ(rows(state.fluid), expected_rows(global, reach));
@@ -270,8 +271,9 @@ TEST(Halo, positions_do_not_drift_through_many_exchanges) {
   const std::uint64_t digest = testing::total(digest_share(state));
   Halo<2> halo(built.model, domains, world());
   std::vector<Solid<2>> copies;
+  Stopwatch watch;
   for (int n = 0; n < 5; ++n) {
-    halo.exchange(state, copies);
+    halo.exchange(state, copies, watch);
     state = share_of(state, state, region);
   }
   EXPECT_EQ(testing::total(digest_share(state)), digest);

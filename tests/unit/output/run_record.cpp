@@ -35,6 +35,7 @@ RunRecord record() {
   record.domains = {2, 2};
   record.borders = {{0.0, 0.25, 1.0}, {0.0, 1.5, 2.0}};
   record.particles = 99;
+  record.frozen_particles = 12;
   record.solids = 3;
   record.rate = 1e6;
   record.state = "finished";
@@ -43,9 +44,9 @@ RunRecord record() {
 
 TEST(RunRecord, has_every_key_that_readers_rely_on) {
   const auto json = nlohmann::json::parse(run_record_text(record()));
-  for (const char* key :
-       {"commit", "compiler", "flags", "instruction_set", "host", "date", "scene", "terms", "steps", "wall_seconds",
-        "digest", "momentum", "ranks", "domains", "threads", "particles", "particle_steps_per_second", "state"})
+  for (const char* key : {"commit", "compiler", "flags", "instruction_set", "host", "date", "scene", "terms", "steps",
+                          "wall_seconds", "digest", "momentum", "ranks", "domains", "threads", "particles",
+                          "frozen_particles", "particle_steps_per_second", "state"})
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_EQ(json["steps"], 25);
   EXPECT_EQ(json["first_step"], 5);

@@ -1,0 +1,35 @@
+// Where the time of a step goes.
+#pragma once
+
+#include <chrono>
+
+#include "particles/engine.hpp"
+
+namespace mappm {
+
+/// Of a step: messages of PPs; their order by cells; pairs of PPs; pairs of PPs and FPs; FPs, contacts and motion of
+/// solids; copies of solids and reports on them, their messages included; motion of PPs.
+enum class Phase { exchange, sort, pairs, frozen_pairs, solids, copies, integrate };
+
+class Stopwatch {
+ public:
+  void start() { last_ = std::chrono::steady_clock::now(); }
+  /// Adds the seconds since `start`, or since the last call, to a phase.
+  void end(Phase phase) {
+    const auto now = std::chrono::steady_clock::now();
+    seconds_[static_cast<int>(phase)] += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+  PhaseSeconds seconds() const {
+    constexpr const char* names[] = {"exchange", "sort", "pairs", "frozen_pairs", "solids", "copies", "integrate"};
+    PhaseSeconds named;
+    for (const char* name : names) named.emplace_back(name, seconds_[named.size()]);
+    return named;
+  }
+
+ private:
+  double seconds_[7] = {};
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace mappm
