@@ -62,7 +62,7 @@ class ParallelEngine {
   std::unique_ptr<Halo<D>> halo_;
   CellGrid<D> grid_;
   std::unique_ptr<CellLevels<D>> levels_;
-  FluidPass<D> pass_;
+  ModelPass<D> pass_;
   State<D> state_;
 
   // Of the present step:
