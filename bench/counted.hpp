@@ -65,6 +65,10 @@ class Counted {
 }  // namespace mappm::bench
 
 template <>
+struct mappm::ScalarOf<mappm::bench::Counted> {
+  using Type = double;
+};
+template <>
 struct mappm::FixedOf<mappm::bench::Counted> {
   using Type = bench::Counted;
 };

@@ -9,10 +9,10 @@
 namespace mappm {
 namespace {
 
-template <int D>
+template <int D, class Numbers>
 void pair_pass(benchmark::State& state) {
   bench::SortedFluid<D> setup(D == 2 ? 320 : 48, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
-  FluidPass<D> pass(setup.fluid.model, 1);
+  FluidPass<D, Numbers> pass(setup.fluid.model, 1);
   for (auto _ : state) {
     pass.sum(setup.particles, setup.grid);
     benchmark::DoNotOptimize(pass.sums(0));
@@ -24,13 +24,23 @@ void pair_pass(benchmark::State& state) {
   state.counters["particle-steps/s"] = rate(setup.owned);
 }
 
-BENCHMARK(pair_pass<2>)
+BENCHMARK(pair_pass<2, DoublePairs<2>>)
     ->Name("fluid_pass_2d_39_neighbours")
     ->ArgNames({"across", "along"})
     ->ArgsProduct({{1, 2, 3, 4}, {4, 8, 16}})
     ->Unit(benchmark::kMillisecond);
-BENCHMARK(pair_pass<3>)
+BENCHMARK(pair_pass<3, DoublePairs<3>>)
     ->Name("fluid_pass_3d_77_neighbours")
+    ->ArgNames({"across", "along"})
+    ->ArgsProduct({{1, 2, 3}, {4, 8, 16}})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(pair_pass<2, SinglePairs<2>>)
+    ->Name("fluid_pass_2d_39_neighbours_single")
+    ->ArgNames({"across", "along"})
+    ->ArgsProduct({{1, 2, 3, 4}, {4, 8, 16}})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(pair_pass<3, SinglePairs<3>>)
+    ->Name("fluid_pass_3d_77_neighbours_single")
     ->ArgNames({"across", "along"})
     ->ArgsProduct({{1, 2, 3}, {4, 8, 16}})
     ->Unit(benchmark::kMillisecond);

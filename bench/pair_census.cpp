@@ -31,8 +31,14 @@ struct Census {
 /// The parts of a pass, each by itself. None is inlined, so that a tool can tell them apart.
 template <int D>
 class Parts {
+  using Pass = FluidPass<D, DoublePairs<D>>;
+  using Lists = typename Pass::Lists;
+
  public:
-  explicit Parts(std::uint64_t side) : setup_(side, across, along), pass_(setup_.fluid.model, 1) {
+  explicit Parts(std::uint64_t side)
+      : setup_(side, across, along),
+        numbers_(setup_.fluid.model.pair, setup_.fluid.model.rest_density),
+        pass_(setup_.fluid.model, 1) {
     sum();
     lay_blocks();
   }
@@ -42,16 +48,16 @@ class Parts {
   [[gnu::noinline]] void sort() { setup_.grid.sort(setup_.particles); }
   [[gnu::noinline]] void lay_out() { lay_blocks(); }
   [[gnu::noinline]] void lists() {
-    pass_.for_each_list(setup_.grid, [](PartnerLists<D>&) {});
+    pass_.for_each_list(setup_.particles, setup_.grid, [](Lists&) {});
   }
   [[gnu::noinline]] void lists_and_distances() {
-    pass_.for_each_list(setup_.grid, [&](PartnerLists<D>& lists) { measure_distances(lists); });
+    pass_.for_each_list(setup_.particles, setup_.grid, [&](Lists& lists) { measure_distances(lists); });
   }
   [[gnu::noinline]] void whole_pass() { sum(); }
 
   Census census() {
     Census found;
-    pass_.for_each_list(setup_.grid, [&](PartnerLists<D>& lists) {
+    pass_.for_each_list(setup_.particles, setup_.grid, [&](Lists& lists) {
       found.listed += lists.size();
       lists.for_each_partner([&](std::uint32_t, std::uint32_t) { ++found.candidates; });
       measure_distances(lists);
@@ -68,15 +74,14 @@ class Parts {
   }
 
  private:
-  void lay_blocks() { blocks_.fill(setup_.fluid.model, setup_.particles, setup_.grid); }
+  void lay_blocks() { blocks_.fill(setup_.fluid.model, numbers_, setup_.particles, setup_.grid); }
   void sum() { pass_.sum(setup_.particles, setup_.grid); }
-  void measure_distances(PartnerLists<D>& lists) {
-    lists.template measure<false>(setup_.fluid.model.pair, blocks_.data());
-  }
+  void measure_distances(Lists& lists) { lists.template measure<false>(numbers_, blocks_.data()); }
 
   SortedFluid<D> setup_;
-  FluidPass<D> pass_;
-  PairBlocks<D> blocks_;
+  DoublePairs<D> numbers_;
+  Pass pass_;
+  PairBlocks<D, DoublePairs<D>> blocks_;
 };
 
 /// Operations of a block, and the registers it loads and stores.
@@ -144,7 +149,7 @@ class Report {
     ratio("blocks_kept", kept / listed);
     ratio("lanes_used_listed", candidates / listed / lane_count);
     ratio("lanes_used_kept", pairs / kept / lane_count);
-    constexpr double block = sizeof(PairBlock<D>) / lane_count, state = 8.0 * (2 * D + 1);
+    constexpr double block = sizeof(PairBlock<D, DoublePairs<D>>) / lane_count, state = 8.0 * (2 * D + 1);
     figure("bytes_per_particle_block", block);
     // State read and block written, block read and written; more where a block leaves the cache between two rows.
     figure("bytes_per_particle_memory", state + 3.0 * block);

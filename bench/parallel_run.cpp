@@ -51,9 +51,9 @@ void reset_peak() {
 /// Bytes a PP by the tables of the engine: state, what the pair pass keeps, and the scratch of the sort.
 template <int D>
 double table_bytes() {
-  constexpr double state = 8.0 * (1 + FluidParticles<D>::field_count);  // id and fields
-  constexpr double pass = sizeof(PairBlock<D>) / lane_count;            // of the blocks of the pair pass
-  constexpr double sort = 4.0 + 8.0 + 8.0;                              // target, one field, ids
+  constexpr double state = 8.0 * (1 + FluidParticles<D>::field_count);        // id and fields
+  constexpr double pass = sizeof(PairBlock<D, DoublePairs<D>>) / lane_count;  // of the blocks of the pass
+  constexpr double sort = 4.0 + 8.0 + 8.0;                                    // target, one field, ids
   return state + pass + sort;
 }
 

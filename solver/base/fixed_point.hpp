@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace mappm {
 
@@ -32,6 +33,13 @@ inline constexpr double rounding_constant = 0x1.8p52;
 inline std::int64_t to_fixed(double x) {
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(x + rounding_constant);
   return static_cast<std::int64_t>(bits - std::bit_cast<std::uint64_t>(rounding_constant));
+}
+
+/// Rounds x (|x| < 2^31) to the nearest integer, ties to even. Outside the range, and for NaN, the result is -2^31.
+inline std::int32_t to_fixed(float x) {
+  constexpr std::int32_t lowest = std::numeric_limits<std::int32_t>::min();
+  if (!(x >= -0x1p31f && x < 0x1p31f)) return lowest;
+  return static_cast<std::int32_t>(std::lrint(x));
 }
 
 /// Rounds x to the nearest integer, for |x| < 2^126: sums over a solid are longer than one word.

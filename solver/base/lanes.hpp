@@ -2,10 +2,14 @@
 // file that knows which vector library stands behind.
 #pragma once
 
-#include <array>
+#include <algorithm>
+#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <experimental/simd>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
 
 #include "base/fixed_point.hpp"
 
@@ -14,54 +18,130 @@
 
 namespace mappm {
 
+template <class T, class Abi>
+using Simd = std::experimental::simd<T, Abi>;
+
 using Lanes = std::experimental::native_simd<double>;
 using IntLanes = std::experimental::rebind_simd_t<std::int64_t, Lanes>;
 inline constexpr int lane_count = static_cast<int>(Lanes::size());
 static_assert(sizeof(Lanes) == sizeof(IntLanes), "a lane of integers must be as wide as a lane of doubles");
 
-MAPPM_INLINE IntLanes bits_of(const Lanes& x) {
-  IntLanes bits;
-  std::memcpy(static_cast<void*>(&bits), static_cast<const void*>(&x), sizeof bits);
-  return bits;
+/// Lanes of single precision, as many: by measurement (bench/pair_numbers.cpp) wider ones lose more in lanes that stay
+/// empty than they gain.
+using FloatLanes = std::experimental::rebind_simd_t<float, Lanes>;
+using Int32Lanes = std::experimental::rebind_simd_t<std::int32_t, Lanes>;
+
+namespace detail {
+
+/// The bits of one vector at the start of another.
+template <class To, class From>
+MAPPM_INLINE To same_bits(const From& from) {
+  To to{};
+  std::memcpy(static_cast<void*>(&to), static_cast<const void*>(&from), std::min(sizeof to, sizeof from));
+  return to;
 }
+
+}  // namespace detail
 
 /// Same rounding as the scalar `to_fixed`, in every lane.
 MAPPM_INLINE IntLanes to_fixed(const Lanes& x) {
-  return bits_of(x + Lanes(rounding_constant)) - IntLanes(std::bit_cast<std::int64_t>(rounding_constant));
+  return detail::same_bits<IntLanes>(x + Lanes(rounding_constant)) -
+         IntLanes(std::bit_cast<std::int64_t>(rounding_constant));
+}
+MAPPM_INLINE Int32Lanes to_fixed(const FloatLanes& x) {
+#if defined(__AVX512F__)
+  return detail::same_bits<Int32Lanes>(_mm256_cvtps_epi32(detail::same_bits<__m256>(x)));
+#elif defined(__SSE2__)
+  return detail::same_bits<Int32Lanes>(_mm_cvtps_epi32(detail::same_bits<__m128>(x)));
+#else
+  return Int32Lanes([&](auto lane) { return to_fixed(static_cast<float>(x[lane])); });
+#endif
 }
 
-MAPPM_INLINE double square_root(double x) { return std::sqrt(x); }
-MAPPM_INLINE Lanes square_root(const Lanes& x) { return std::experimental::sqrt(x); }
+/// The number that each lane of a type holds: the type itself where that is one number.
+template <class Real>
+struct ScalarOf {
+  using Type = Real;
+};
+template <class T, class Abi>
+struct ScalarOf<Simd<T, Abi>> {
+  using Type = T;
+};
+template <class Real>
+using Scalar = typename ScalarOf<Real>::Type;
 
-MAPPM_INLINE double larger(double a, double b) { return a < b ? b : a; }
-MAPPM_INLINE Lanes larger(const Lanes& a, const Lanes& b) { return std::experimental::max(a, b); }
+/// A constant of a law in a number type.
+template <class Real>
+MAPPM_INLINE Real constant(double value) {
+  return Real(static_cast<Scalar<Real>>(value));
+}
 
-MAPPM_INLINE double smaller(double a, double b) { return b < a ? b : a; }
-MAPPM_INLINE Lanes smaller(const Lanes& a, const Lanes& b) { return std::experimental::min(a, b); }
+template <std::floating_point Real>
+MAPPM_INLINE Real square_root(Real x) {
+  return std::sqrt(x);
+}
+template <class T, class Abi>
+MAPPM_INLINE Simd<T, Abi> square_root(const Simd<T, Abi>& x) {
+  return std::experimental::sqrt(x);
+}
+
+template <std::floating_point Real>
+MAPPM_INLINE Real larger(Real a, Real b) {
+  return a < b ? b : a;
+}
+template <class T, class Abi>
+MAPPM_INLINE Simd<T, Abi> larger(const Simd<T, Abi>& a, const Simd<T, Abi>& b) {
+  return std::experimental::max(a, b);
+}
+
+template <std::floating_point Real>
+MAPPM_INLINE Real smaller(Real a, Real b) {
+  return b < a ? b : a;
+}
+template <class T, class Abi>
+MAPPM_INLINE Simd<T, Abi> smaller(const Simd<T, Abi>& a, const Simd<T, Abi>& b) {
+  return std::experimental::min(a, b);
+}
 
 MAPPM_INLINE Lanes load_lanes(const double* from) { return Lanes(from, std::experimental::element_aligned); }
+MAPPM_INLINE FloatLanes load_lanes(const float* from) { return FloatLanes(from, std::experimental::element_aligned); }
 MAPPM_INLINE IntLanes load_lanes(const std::int64_t* from) {
   return IntLanes(from, std::experimental::element_aligned);
 }
-MAPPM_INLINE void store_lanes(const Lanes& lanes, double* to) { lanes.copy_to(to, std::experimental::element_aligned); }
-MAPPM_INLINE void store_lanes(const IntLanes& lanes, std::int64_t* to) {
+MAPPM_INLINE Int32Lanes load_lanes(const std::int32_t* from) {
+  return Int32Lanes(from, std::experimental::element_aligned);
+}
+template <class T, class Abi>
+MAPPM_INLINE void store_lanes(const Simd<T, Abi>& lanes, T* to) {
   lanes.copy_to(to, std::experimental::element_aligned);
 }
 
+/// Each number in another type: rounded to nearest, cut to its whole part, or to its low bits.
+template <class T, class U, class Abi>
+MAPPM_INLINE auto lanes_of(const Simd<U, Abi>& lanes) {
+  return std::experimental::static_simd_cast<std::experimental::rebind_simd_t<T, Simd<U, Abi>>>(lanes);
+}
+
 /// 0, 1, 2, ...
-MAPPM_INLINE Lanes lane_numbers() {
-  return Lanes([](auto lane) { return static_cast<double>(lane); });
+template <class Vector = Lanes>
+MAPPM_INLINE Vector lane_numbers() {
+  return Vector([](auto lane) { return static_cast<Scalar<Vector>>(lane); });
 }
 
 /// The whole parts of non-negative numbers, or of numbers above -1.
 MAPPM_INLINE void whole_numbers(const Lanes& lanes, std::int32_t* to) {
-  using Int32Lanes = std::experimental::rebind_simd_t<std::int32_t, Lanes>;
-  std::experimental::static_simd_cast<Int32Lanes>(lanes).copy_to(to, std::experimental::element_aligned);
+  store_lanes(lanes_of<std::int32_t>(lanes), to);
 }
 
-MAPPM_INLINE bool any_below(const Lanes& lanes, double limit) { return std::experimental::any_of(lanes < limit); }
+template <class T, class Abi>
+MAPPM_INLINE bool any_below(const Simd<T, Abi>& lanes, Scalar<Simd<T, Abi>> limit) {
+  return std::experimental::any_of(lanes < limit);
+}
 
-MAPPM_INLINE std::int64_t sum_of_lanes(const IntLanes& lanes) { return std::experimental::reduce(lanes); }
+template <class T, class Abi>
+MAPPM_INLINE T sum_of_lanes(const Simd<T, Abi>& lanes) {
+  return std::experimental::reduce(lanes);
+}
 
 /// The integer type that belongs to a number type.
 template <class Real>
@@ -71,8 +151,16 @@ struct FixedOf<double> {
   using Type = std::int64_t;
 };
 template <>
+struct FixedOf<float> {
+  using Type = std::int32_t;
+};
+template <>
 struct FixedOf<Lanes> {
   using Type = IntLanes;
+};
+template <>
+struct FixedOf<FloatLanes> {
+  using Type = Int32Lanes;
 };
 template <class Real>
 using Fixed = typename FixedOf<Real>::Type;

@@ -44,6 +44,7 @@ std::vector<std::string> term_names(const Terms& terms) {
   add(terms.motion, "motion of solids");
   add(terms.rotation, "rotation of solids");
   add(terms.contact, "contact");
+  add(terms.single, "single precision of pairs");
   return names;
 }
 

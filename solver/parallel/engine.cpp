@@ -43,7 +43,7 @@ ParallelEngine<D>::ParallelEngine(const Model<D>& model, const Domains<D>& domai
       communicator_(communicator),
       domains_(domains),
       options_(options),
-      pass_(model, options.threads),
+      pass_(make_pass(model, options.threads)),
       densities_(model),
       state_(std::move(state)) {
   rebalance();
@@ -97,9 +97,9 @@ void ParallelEngine<D>::step() {
   if (model_.terms.fluid) {
     grid_.sort(state_.fluid);
     watch_.end(Phase::sort);
-    pass_.sum(state_.fluid, grid_);
+    std::visit([&](auto& pass) { pass.sum(state_.fluid, grid_); }, pass_);
     watch_.end(Phase::pairs);
-    pass_.add_frozen(grid_, solids_.frozen, frozen_sums_);
+    std::visit([&](auto& pass) { pass.add_frozen(grid_, solids_.frozen, frozen_sums_); }, pass_);
     watch_.end(Phase::frozen_pairs);
   }
   explain_pairs();
@@ -144,7 +144,9 @@ void ParallelEngine<D>::explain_pairs() {
   }
   trace_.reset();
   if (!traced_particle_.has_value()) return;
-  if (const auto partners = pass_.trace(state_.fluid, grid_, solids_.frozen, *traced_particle_)) {
+  const auto partners =
+      std::visit([&](auto& pass) { return pass.trace(state_.fluid, grid_, solids_.frozen, *traced_particle_); }, pass_);
+  if (partners) {
     trace_ = StepTrace<D>{state_.step, *traced_particle_, *partners};
     for (PartnerTrace<D>& partner : trace_->partners)
       if (partner.frozen) partner.id = solids_.bodies[partner.id].solid->id;
@@ -235,7 +237,7 @@ void ParallelEngine<D>::move_fluid() {
       for (row[1] = first_inner(1); row[1] < end_inner(1); ++row[1]) add_row();
   }
   std::vector<Vec<D, Int128>> given(model_.terms.force_field ? rows.size() : 0);  // by the field of force, to each row
-  with_force_field(model_, state_.step, [&]<bool field>(std::bool_constant<field>) {
+  const auto move = [&]<bool field>(const auto& pass, std::bool_constant<field>) {
 #pragma omp parallel for num_threads(options_.threads) schedule(static) if (options_.threads > 1)
     for (std::size_t n = 0; n < rows.size(); ++n)
       for (std::uint32_t i = rows[n].first; i < rows[n].last; ++i) {
@@ -244,7 +246,7 @@ void ParallelEngine<D>::move_fluid() {
           x[axis] = fluid.x(axis)[i];
           v[axis] = fluid.v(axis)[i];
         }
-        NeighbourSums<D> sums = pass_.sums(i, rows[n].plane);
+        NeighbourSums<D> sums = pass.sums(i, rows[n].plane);
         if constexpr (field) {
           const Vec<D, std::int64_t> impulse = field_impulse(model_.fluid_field, x);
           sums.impulse += impulse;
@@ -258,7 +260,9 @@ void ParallelEngine<D>::move_fluid() {
           fluid.v(axis)[i] = v[axis];
         }
       }
-  });
+  };
+  std::visit([&](const auto& pass) { with_force_field(model_, state_.step, [&](auto field) { move(pass, field); }); },
+             pass_);
   for (const Vec<D, Int128>& impulse : given) state_.outside_impulse += impulse;
   std::size_t kept = 0;
   for (const auto& [first, last, plane] : rows) {

@@ -63,7 +63,7 @@ class ParallelEngine {
   std::unique_ptr<Halo<D>> halo_;
   CellGrid<D> grid_;
   std::unique_ptr<CellLevels<D>> levels_;
-  FluidPass<D> pass_;
+  ModelPass<D> pass_;
   FrozenDensities<D> densities_;
   State<D> state_;
 

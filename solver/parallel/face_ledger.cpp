@@ -3,35 +3,28 @@
 #include <algorithm>
 #include <map>
 
-#include "physics/wall.hpp"
-
 namespace mappm {
 
 namespace {
 
 template <int D>
-struct Body {
-  Vec<D, double> x, v;
-  VolumeTerms<double> volume;
-};
-
-template <int D>
-Body<D> body_of(const Model<D>& model, const FluidParticles<D>& fluid, std::size_t i) {
-  Body<D> body;
+PairPoint<D> point_of(const Model<D>& model, const FluidParticles<D>& fluid, std::size_t i) {
+  PairPoint<D> point;
   for (int axis = 0; axis < D; ++axis) {
-    body.x[axis] = fluid.x(axis)[i];
-    body.v[axis] = fluid.v(axis)[i];
+    point.x[axis] = fluid.x(axis)[i];
+    point.v[axis] = fluid.v(axis)[i];
   }
-  body.volume = volume_terms(fluid.density()[i], model.rest_density, 1.0, model.background);
-  return body;
+  point.volume = volume_terms(fluid.density()[i], model.rest_density, 1.0, model.background);
+  return point;
 }
 
 /// Impulse that PP i receives from j, a PP or an FP.
-template <class Kernel, int D, class Beta>
-Vec<D, std::int64_t> impulse_of_pair(const Model<D>& model, const Body<D>& i, const Body<D>& j, Beta&& beta) {
-  const FluidPair<D, double> pair{i.x - j.x, i.v - j.v, i.volume.v2 + j.volume.v2, i.volume.pv2 + j.volume.pv2};
-  const Vec<D, double> r = separation(model.pair, pair.d);
-  return fluid_pair<Kernel, false>(model.pair, pair, r, cut_distance(dot(r, r)), beta(r)).impulse;
+template <class Kernel, class Numbers, int D, class Beta>
+Vec<D, std::int64_t> impulse_of_pair(const Numbers& numbers, const PairPoint<D>& i, const PairPoint<D>& j,
+                                     Beta&& beta) {
+  const auto pair = pair_of(numbers, i, j, [](double a, double b) { return a - b; });
+  const auto r = separation(numbers.law(), pair.d);
+  return numbers.sums(fluid_pair<Kernel, false>(numbers.law(), pair, r, cut_distance(dot(r, r)), beta(r))).impulse;
 }
 
 template <int D>
@@ -68,28 +61,27 @@ template <int D>
 std::vector<FaceImpulse<D>> FaceLedger<D>::faces(const FluidParticles<D>& fluid,
                                                  const std::vector<FrozenInStep<D>>& frozen) const {
   std::map<int, Vec<D, Int128>> from;
-  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
+  with_pair_numbers(model_, [&]<class Kernel, class Numbers>(Kernel, auto, const Numbers& numbers) {
+    using Real = typename Numbers::Real;
     for (std::size_t g = 0; g < fluid.size(); ++g) {
-      const Body<D> ghost = body_of(model_, fluid, g);
+      const PairPoint<D> ghost = point_of(model_, fluid, g);
       if (region_.contains(ghost.x)) continue;
       Vec<D, Int128>& sum = from[domains_.owner(ghost.x)];
       for_each_near(ghost.x, [&](std::size_t i) {
-        const Body<D> own = body_of(model_, fluid, i);
+        const PairPoint<D> own = point_of(model_, fluid, i);
         if (region_.contains(own.x))
-          add(sum, impulse_of_pair<Kernel>(model_, own, ghost, [](const auto&) { return 1.0; }), 1);
+          add(sum, impulse_of_pair<Kernel>(numbers, own, ghost, [](const auto&) { return Real(1); }), 1);
       });
     }
     for (const FrozenInStep<D>& fp : frozen) {
-      const Body<D> point{fp.place.x, fp.place.v, fp.volume};
+      const PairPoint<D> point{fp.place.x, fp.place.v, fp.volume};
       const bool own_point = region_.contains(point.x);
-      const auto beta = [&](const Vec<D, double>& r) {
-        return model_.terms.extrapolated ? no_slip_factor(r, fp.place.normal, fp.depth, model_.no_slip_nearest) : 1.0;
-      };
+      const NoSlipFactor<D, Real> beta(model_, fp);
       for_each_near(point.x, [&](std::size_t i) {
-        const Body<D> other = body_of(model_, fluid, i);
+        const PairPoint<D> other = point_of(model_, fluid, i);
         if (region_.contains(other.x) == own_point) return;
         Vec<D, Int128>& sum = from[domains_.owner(own_point ? other.x : point.x)];
-        add(sum, impulse_of_pair<Kernel>(model_, other, point, beta), own_point ? -1 : 1);
+        add(sum, impulse_of_pair<Kernel>(numbers, other, point, beta), own_point ? -1 : 1);
       });
     }
   });
@@ -99,12 +91,16 @@ std::vector<FaceImpulse<D>> FaceLedger<D>::faces(const FluidParticles<D>& fluid,
 }
 
 template <int D>
-Vec<D, Int128> FaceLedger<D>::received(const FluidParticles<D>& fluid, const FluidPass<D>& pass,
+Vec<D, Int128> FaceLedger<D>::received(const FluidParticles<D>& fluid, const ModelPass<D>& pass,
                                        const std::vector<FrozenInStep<D>>& frozen,
                                        const std::vector<NeighbourSums<D>>& frozen_sums) const {
   Vec<D, Int128> sum{};
-  for (std::uint32_t i = 0; i < fluid.size(); ++i)
-    if (region_.contains(body_of(model_, fluid, i).x)) add(sum, pass.sums(i).impulse, 1);
+  std::visit(
+      [&](const auto& numbered) {
+        for (std::uint32_t i = 0; i < fluid.size(); ++i)
+          if (region_.contains(point_of(model_, fluid, i).x)) add(sum, numbered.sums(i).impulse, 1);
+      },
+      pass);
   for (std::size_t k = 0; k < frozen.size(); ++k)
     if (region_.contains(frozen[k].place.x)) add(sum, frozen_sums[k].impulse, 1);
   return sum;

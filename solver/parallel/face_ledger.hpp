@@ -26,7 +26,7 @@ class FaceLedger {
   std::vector<FaceImpulse<D>> faces(const FluidParticles<D>& fluid, const std::vector<FrozenInStep<D>>& frozen) const;
 
   /// Impulse that the pass summed for all PPs and FPs in the region.
-  Vec<D, Int128> received(const FluidParticles<D>& fluid, const FluidPass<D>& pass,
+  Vec<D, Int128> received(const FluidParticles<D>& fluid, const ModelPass<D>& pass,
                           const std::vector<FrozenInStep<D>>& frozen,
                           const std::vector<NeighbourSums<D>>& frozen_sums) const;
 

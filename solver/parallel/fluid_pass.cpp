@@ -4,53 +4,40 @@
 
 #include <algorithm>
 
-#include "physics/wall.hpp"
+#ifdef MAPPM_FLOATING_SUMS
+#include "parallel/floating_pairs.hpp"
+#endif
 
 namespace mappm {
 
 namespace {
 
 struct UnitFactor {
-  template <int D>
-  Lanes operator()(const Vec<D, Lanes>&) const {
-    return Lanes(1.0);
+  template <int D, class Real>
+  Real operator()(const Vec<D, Real>&) const {
+    return constant<Real>(1.0);
   }
-};
-
-/// beta of the pairs of one FP.
-template <int D>
-class NoSlipFactor {
- public:
-  NoSlipFactor(const Model<D>& model, const FrozenInStep<D>& fp)
-      : extrapolated_(model.terms.extrapolated),
-        normal_(fp.place.normal),
-        depth_(fp.depth),
-        nearest_(model.no_slip_nearest) {}
-  MAPPM_INLINE Lanes operator()(const Vec<D, Lanes>& r) const {
-    if (!extrapolated_) return Lanes(1.0);
-    Vec<D, Lanes> normal;
-    for (int axis = 0; axis < D; ++axis) normal[axis] = Lanes(normal_[axis]);
-    return no_slip_factor(r, normal, Lanes(depth_), nearest_);
-  }
-
- private:
-  bool extrapolated_;
-  Vec<D, double> normal_;
-  double depth_, nearest_;
 };
 
 }  // namespace
 
-template <int D>
-MAPPM_INLINE PairCentre<D> FluidPass<D>::centre(const FrozenInStep<D>& fp) const {
-  return {fp.place.x, fp.place.v, fp.volume};
+template <int D, class Numbers>
+MAPPM_INLINE PairCentre<D, Numbers> FluidPass<D, Numbers>::centre(const FrozenInStep<D>& fp) const {
+  using Real = typename Numbers::Real;
+  Centre centre;
+  for (int axis = 0; axis < D; ++axis) {
+    centre.x[axis] = numbers_.place(axis, fp.place.x[axis]);
+    centre.v[axis] = static_cast<Real>(fp.place.v[axis]);
+  }
+  centre.volume = {static_cast<Real>(fp.volume.v2), static_cast<Real>(fp.volume.pv2)};
+  return centre;
 }
 
 /// Calls work(first, last, search) for bands of planes (cells with one coordinate on the slowest axis). What a band
 /// writes lies at most `margin` planes beyond itself, so bands of one parity, each two margins high, run side by side.
-template <int D>
+template <int D, class Numbers>
 template <class Work>
-void FluidPass<D>::for_each_band(const CellGrid<D>& grid, Work&& work) {
+void FluidPass<D, Numbers>::for_each_band(const CellGrid<D>& grid, Work&& work) {
   const int planes = grid.count(D - 1);
   searches_.resize(static_cast<std::size_t>(threads_));
   if (threads_ == 1) return work(0, planes, searches_.front());
@@ -64,9 +51,9 @@ void FluidPass<D>::for_each_band(const CellGrid<D>& grid, Work&& work) {
   }
 }
 
-template <int D>
+template <int D, class Numbers>
 template <class Work>
-void FluidPass<D>::for_each_row(const CellGrid<D>& grid, int first_plane, int last_plane, Work&& work) const {
+void FluidPass<D, Numbers>::for_each_row(const CellGrid<D>& grid, int first_plane, int last_plane, Work&& work) const {
   Vec<D, int> row;
   if constexpr (D == 2) {
     for (row[1] = first_plane; row[1] < last_plane; ++row[1]) work(row);
@@ -92,43 +79,44 @@ std::vector<std::vector<std::uint32_t>> frozen_by_plane(const CellGrid<D>& grid,
   return by_plane;
 }
 
-template <int D>
-void FluidPass<D>::sum(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
-  blocks_.fill(model_, fluid, grid);
+template <int D, class Numbers>
+void FluidPass<D, Numbers>::sum(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
+  blocks_.fill(model_, numbers_, fluid, grid);
   half_rows_ = row_offsets(grid, true);
   all_rows_ = row_offsets(grid, false);
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     for_each_band(grid, [&](int first, int last, Search& search) {
-      for_each_row(grid, first, last, [&](const Vec<D, int>& row) { sum_row<Kernel, transport>(grid, row, search); });
+      for_each_row(grid, first, last,
+                   [&](const Vec<D, int>& row) { sum_row<Kernel, transport>(fluid, grid, row, search); });
     });
   });
 }
 
-template <int D>
-void FluidPass<D>::add_frozen(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
-                              std::vector<NeighbourSums<D>>& frozen_sums) {
+template <int D, class Numbers>
+void FluidPass<D, Numbers>::add_frozen(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
+                                       std::vector<NeighbourSums<D>>& frozen_sums) {
   frozen_sums.assign(frozen.size(), {});
   if (frozen.empty()) return;
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     const std::vector<std::vector<std::uint32_t>> by_plane = frozen_by_plane(grid, frozen);
     for_each_band(grid, [&](int first, int last, Search& search) {
       for (int plane = first; plane < last; ++plane)
-        for_each_frozen_list(
-            grid, frozen, by_plane[static_cast<std::size_t>(plane)], search,
-            [&](PartnerLists<D>& lists) { sum_frozen<Kernel, transport>(frozen, lists, frozen_sums); });
+        for_each_frozen_list(grid, frozen, by_plane[static_cast<std::size_t>(plane)], search,
+                             [&](Lists& lists) { sum_frozen<Kernel, transport>(frozen, lists, frozen_sums); });
     });
   });
 }
 
 /// All pairs of PPs whose first one lies in this row: calls work(lists) with the partners of some of its particles. A
 /// pair of two ghosts is left out.
-template <int D>
+template <int D, class Numbers>
 template <class Work>
-void FluidPass<D>::for_each_list(const CellGrid<D>& grid, const Vec<D, int>& row, Search& search, Work&& work) {
+void FluidPass<D, Numbers>::for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
+                                          const Vec<D, int>& row, Search& search, Work&& work) {
   bool inner_row = true;
   for (int axis = 1; axis < D; ++axis) inner_row = inner_row && grid.is_inner(axis, row[axis]);
   NearRows<D>& near = search.near;
-  PartnerLists<D>& lists = search.lists;
+  Lists& lists = search.lists;
   const auto run = [&](int begin_cell, int end_cell, bool ghost) {
     const std::size_t cells = grid.row(row);
     const std::uint32_t gap = blocks_.gap(row[D - 1]);
@@ -136,15 +124,15 @@ void FluidPass<D>::for_each_list(const CellGrid<D>& grid, const Vec<D, int>& row
     const std::uint32_t end = grid.start(cells + static_cast<std::size_t>(end_cell)) + gap;
     if (begin == end) return;
     near.fit(grid, blocks_, half_rows_, row, ghost);
-    for (std::uint32_t block = begin / lane_count; block * lane_count < end; ++block) {
+    for (std::uint32_t group = begin - begin % lane_count; group < end; group += lane_count) {
       Vec<D, Lanes> places;
-      for (int axis = 0; axis < D; ++axis) places[axis] = load_lanes(blocks_.data()[block].x[axis]);
+      for (int axis = 0; axis < D; ++axis) places[axis] = load_lanes(&fluid.x(axis)[group - gap]);
       near.find(grid, places);
-      const std::uint32_t last = std::min((block + 1) * lane_count, end);
-      for (std::uint32_t i = std::max(block * lane_count, begin); i < last; ++i)
+      const std::uint32_t last = std::min(group + lane_count, end);
+      for (std::uint32_t i = std::max(group, begin); i < last; ++i)
         lists.add(
             i, blocks_.centre(i).x, near.count(), [&](std::size_t n) __attribute__((always_inline)) {
-              auto range = near.range(grid, n, i % lane_count);
+              auto range = near.range(grid, n, i - group);
               range.first = std::max(range.first, i + 1);  // other rows lie behind i
               return range;
             });
@@ -160,30 +148,33 @@ void FluidPass<D>::for_each_list(const CellGrid<D>& grid, const Vec<D, int>& row
   run(end_inner, grid.count(0), true);
 }
 
-template <int D>
-void FluidPass<D>::for_each_list(const CellGrid<D>& grid, const std::function<void(PartnerLists<D>&)>& visit) {
+template <int D, class Numbers>
+void FluidPass<D, Numbers>::for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
+                                          const std::function<void(Lists&)>& visit) {
   Search search;
-  for_each_row(grid, 0, grid.count(D - 1), [&](const Vec<D, int>& row) { for_each_list(grid, row, search, visit); });
+  for_each_row(grid, 0, grid.count(D - 1),
+               [&](const Vec<D, int>& row) { for_each_list(fluid, grid, row, search, visit); });
 }
 
-template <int D>
+template <int D, class Numbers>
 template <class Kernel, bool transport>
-void FluidPass<D>::sum_row(const CellGrid<D>& grid, const Vec<D, int>& row, Search& search) {
-  for_each_list(grid, row, search, [&](PartnerLists<D>& lists) {
+void FluidPass<D, Numbers>::sum_row(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row,
+                                    Search& search) {
+  for_each_list(fluid, grid, row, search, [&](Lists& lists) {
     sum_lists<Kernel, transport, false>(
-        model_.pair, blocks_.data(), lists, [&](std::uint32_t i) { return blocks_.centre(i); },
-        [](std::uint32_t) { return UnitFactor{}; },
-        [&](std::uint32_t i, const NeighbourSums<D>& sums) { blocks_.add(i, sums); });
+        numbers_, blocks_.data(), lists, [&](std::uint32_t i) { return blocks_.centre(i); },
+        [](std::uint32_t) { return UnitFactor{}; }, [&](std::uint32_t i, const Sums& sums) { blocks_.add(i, sums); });
   });
 }
 
 /// FPs of a plane of cells, ordered by rows: calls work(lists) with the PPs near some of them.
-template <int D>
+template <int D, class Numbers>
 template <class Work>
-void FluidPass<D>::for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
-                                        std::span<const std::uint32_t> chosen, Search& search, Work&& work) const {
+void FluidPass<D, Numbers>::for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
+                                                 std::span<const std::uint32_t> chosen, Search& search,
+                                                 Work&& work) const {
   NearRows<D>& near = search.near;
-  PartnerLists<D>& lists = search.lists;
+  Lists& lists = search.lists;
   const auto row_of = [&](std::size_t n) {
     Vec<D, int> row;
     for (int axis = 1; axis < D; ++axis) row[axis] = grid.coordinate(axis, frozen[chosen[n]].place.x[axis]);
@@ -197,7 +188,7 @@ void FluidPass<D>::for_each_frozen_list(const CellGrid<D>& grid, const std::vect
     near.fit(grid, blocks_, all_rows_, row, false);
     near.find(grid, places);
     for (std::size_t n = first; n < end; ++n)
-      lists.add(chosen[n], frozen[chosen[n]].place.x, near.count(),
+      lists.add(chosen[n], centre(frozen[chosen[n]]).x, near.count(),
                 [&](std::size_t other) { return near.range(grid, other, n - first); });
     if (!lists.is_full() && end < chosen.size()) continue;
     work(lists);
@@ -206,36 +197,38 @@ void FluidPass<D>::for_each_frozen_list(const CellGrid<D>& grid, const std::vect
 }
 
 /// r of the law points from the FP to the PP.
-template <int D>
+template <int D, class Numbers>
 template <class Kernel, bool transport>
-void FluidPass<D>::sum_frozen(const std::vector<FrozenInStep<D>>& frozen, PartnerLists<D>& lists,
-                              std::vector<NeighbourSums<D>>& frozen_sums) {
+void FluidPass<D, Numbers>::sum_frozen(const std::vector<FrozenInStep<D>>& frozen, Lists& lists,
+                                       std::vector<NeighbourSums<D>>& frozen_sums) {
   sum_lists<Kernel, transport, true>(
-      model_.pair, blocks_.data(), lists, [&](std::uint32_t k) { return centre(frozen[k]); },
-      [&](std::uint32_t k) { return NoSlipFactor<D>(model_, frozen[k]); },
-      [&](std::uint32_t k, const NeighbourSums<D>& sums) { frozen_sums[k] = sums; });
+      numbers_, blocks_.data(), lists, [&](std::uint32_t k) { return centre(frozen[k]); },
+      [&](std::uint32_t k) { return NoSlipFactor<D, typename Numbers::Real>(model_, frozen[k]); },
+      [&](std::uint32_t k, const Sums& sums) { frozen_sums[k] = numbers_.sums(sums); });
 }
 
 /// One pair as the pass would compute it, alone: what it adds to the centre and to the PP at a place.
-template <int D>
+template <int D, class Numbers>
 template <class Kernel, bool transport, bool lanes_first, class Beta>
-auto FluidPass<D>::sums_of_pair(const PairCentre<D>& centre, std::uint32_t place, const Beta& beta) const -> PairSums {
+auto FluidPass<D, Numbers>::sums_of_pair(const Centre& centre, std::uint32_t place, const Beta& beta) const
+    -> PairSums {
   const std::uint32_t lane = place % lane_count;
-  PairBlocks<D> alone = blocks_.one(place);
-  PartnerLists<D> partner;
+  PairBlocks<D, Numbers> alone = blocks_.one(place);
+  Lists partner;
   partner.add(0, centre.x, 1, [&](std::size_t) { return typename NearRows<D>::Range{lane, lane + 1}; });
   PairSums result;
   sum_lists<Kernel, transport, lanes_first>(
-      model_.pair, alone.data(), partner, [&](std::uint32_t) { return centre; }, [&](std::uint32_t) { return beta; },
-      [&](std::uint32_t, const NeighbourSums<D>& sums) { result.centre = sums; });
-  result.other = alone.sums(lane);
+      numbers_, alone.data(), partner, [&](std::uint32_t) { return centre; }, [&](std::uint32_t) { return beta; },
+      [&](std::uint32_t, const Sums& sums) { result.centre = numbers_.sums(sums); });
+  result.other = numbers_.sums(alone.sums(lane));
   return result;
 }
 
-template <int D>
-std::optional<std::vector<PartnerTrace<D>>> FluidPass<D>::trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
-                                                                const std::vector<FrozenInStep<D>>& frozen,
-                                                                std::uint64_t particle) {
+template <int D, class Numbers>
+std::optional<std::vector<PartnerTrace<D>>> FluidPass<D, Numbers>::trace(const FluidParticles<D>& fluid,
+                                                                         const CellGrid<D>& grid,
+                                                                         const std::vector<FrozenInStep<D>>& frozen,
+                                                                         std::uint64_t particle) {
   std::vector<PartnerTrace<D>> partners;
   const auto keep = [&](const PartnerTrace<D>& partner) {
     if (partner.any()) partners.push_back(partner);
@@ -254,7 +247,7 @@ std::optional<std::vector<PartnerTrace<D>>> FluidPass<D>::trace(const FluidParti
   Search search;
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     for_each_row(grid, 0, grid.count(D - 1), [&](const Vec<D, int>& row) {
-      for_each_list(grid, row, search, [&](const PartnerLists<D>& lists) {
+      for_each_list(fluid, grid, row, search, [&](const Lists& lists) {
         lists.for_each_partner([&](std::uint32_t i, std::uint32_t j) {
           if (i != place && j != place) return;
           const PairSums sums = sums_of_pair<Kernel, transport, false>(blocks_.centre(i), j, UnitFactor{});
@@ -263,19 +256,27 @@ std::optional<std::vector<PartnerTrace<D>>> FluidPass<D>::trace(const FluidParti
       });
     });
     for (const auto& plane : frozen_by_plane(grid, frozen))
-      for_each_frozen_list(grid, frozen, plane, search, [&](const PartnerLists<D>& lists) {
+      for_each_frozen_list(grid, frozen, plane, search, [&](const Lists& lists) {
         lists.for_each_partner([&](std::uint32_t k, std::uint32_t j) {
           const FrozenInStep<D>& fp = frozen[k];
           if (j == place)
             keep({true, fp.solid, fp.index,
-                  sums_of_pair<Kernel, transport, true>(centre(fp), place, NoSlipFactor<D>(model_, fp)).other});
+                  sums_of_pair<Kernel, transport, true>(centre(fp), place,
+                                                        NoSlipFactor<D, typename Numbers::Real>(model_, fp))
+                      .other});
         });
       });
   });
   return partners;
 }
 
-template class FluidPass<2>;
-template class FluidPass<3>;
+template class FluidPass<2, DoublePairs<2>>;
+template class FluidPass<3, DoublePairs<3>>;
+template class FluidPass<2, SinglePairs<2>>;
+template class FluidPass<3, SinglePairs<3>>;
+#ifdef MAPPM_FLOATING_SUMS
+template class FluidPass<2, FloatingPairs<2>>;
+template class FluidPass<3, FloatingPairs<3>>;
+#endif
 
 }  // namespace mappm

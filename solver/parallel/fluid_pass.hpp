@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "parallel/lanes_loop.hpp"
@@ -15,10 +16,14 @@
 
 namespace mappm {
 
-template <int D>
+/// `Numbers`: DoublePairs or SinglePairs, as the model has it.
+template <int D, class Numbers>
 class FluidPass {
  public:
-  FluidPass(const Model<D>& model, int threads) : model_(model), threads_(threads) {}
+  using Lists = PartnerLists<D, Numbers>;
+
+  FluidPass(const Model<D>& model, int threads)
+      : model_(model), numbers_(model.pair, model.rest_density), threads_(threads) {}
 
   /// Sums over all PPs near the owned PPs in `fluid`, which is in the order of `grid`; sums of ghosts are partial and
   /// meaningless.
@@ -29,8 +34,10 @@ class FluidPass {
                   std::vector<NeighbourSums<D>>& frozen_sums);
 
   /// Sums of PP i, which lies in this plane of cells.
-  NeighbourSums<D> sums(std::uint32_t i, int plane) const { return blocks_.sums(i + blocks_.gap(plane)); }
-  NeighbourSums<D> sums(std::uint32_t i) const { return blocks_.sums(blocks_.place(i)); }
+  NeighbourSums<D> sums(std::uint32_t i, int plane) const {
+    return numbers_.sums(blocks_.sums(i + blocks_.gap(plane)));
+  }
+  NeighbourSums<D> sums(std::uint32_t i) const { return numbers_.sums(blocks_.sums(blocks_.place(i))); }
 
   /// After both and with their arguments: what each partner gave to the PP with this id that lies in the region, every
   /// pair of the pass taken alone; none where there is no such PP. For an FP `id` is the index of its solid in the
@@ -38,41 +45,54 @@ class FluidPass {
   std::optional<std::vector<PartnerTrace<D>>> trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
                                                     const std::vector<FrozenInStep<D>>& frozen, std::uint64_t particle);
 
-  /// After `sum` and with its grid: calls visit(lists) with the pairs of PPs, lists by lists as `sum` meets them.
-  void for_each_list(const CellGrid<D>& grid, const std::function<void(PartnerLists<D>&)>& visit);
+  /// After `sum` and with its arguments: calls visit(lists) with the pairs of PPs, lists by lists as `sum` meets them.
+  void for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const std::function<void(Lists&)>& visit);
 
  private:
+  using Centre = PairCentre<D, Numbers>;
+  using Sums = PairResult<D, typename Numbers::Sum>;
   /// What a thread searches with.
   struct Search {
     NearRows<D> near;
-    PartnerLists<D> lists;
+    Lists lists;
   };
   template <class Work>
   void for_each_row(const CellGrid<D>& grid, int first_plane, int last_plane, Work&& work) const;
   template <class Work>
-  void for_each_list(const CellGrid<D>& grid, const Vec<D, int>& row, Search& search, Work&& work);
+  void for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row, Search& search,
+                     Work&& work);
   template <class Work>
   void for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
                             std::span<const std::uint32_t> chosen, Search& search, Work&& work) const;
-  PairCentre<D> centre(const FrozenInStep<D>& fp) const;
+  Centre centre(const FrozenInStep<D>& fp) const;
   template <class Kernel, bool transport>
-  void sum_row(const CellGrid<D>& grid, const Vec<D, int>& row, Search& search);
+  void sum_row(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row, Search& search);
   template <class Kernel, bool transport>
-  void sum_frozen(const std::vector<FrozenInStep<D>>& frozen, PartnerLists<D>& lists,
-                  std::vector<NeighbourSums<D>>& frozen_sums);
+  void sum_frozen(const std::vector<FrozenInStep<D>>& frozen, Lists& lists, std::vector<NeighbourSums<D>>& frozen_sums);
   struct PairSums {
     NeighbourSums<D> centre, other;
   };
   template <class Kernel, bool transport, bool lanes_first, class Beta>
-  PairSums sums_of_pair(const PairCentre<D>& centre, std::uint32_t place, const Beta& beta) const;
+  PairSums sums_of_pair(const Centre& centre, std::uint32_t place, const Beta& beta) const;
   template <class Work>
   void for_each_band(const CellGrid<D>& grid, Work&& work);
 
   const Model<D>& model_;
+  Numbers numbers_;
   int threads_;
   std::vector<Vec<D, int>> half_rows_, all_rows_;
   std::vector<Search> searches_;  // of the threads
-  PairBlocks<D> blocks_;
+  PairBlocks<D, Numbers> blocks_;
 };
+
+/// The pass in the precision of the model.
+template <int D>
+using ModelPass = std::variant<FluidPass<D, DoublePairs<D>>, FluidPass<D, SinglePairs<D>>>;
+
+template <int D>
+ModelPass<D> make_pass(const Model<D>& model, int threads) {
+  if (model.terms.single) return FluidPass<D, SinglePairs<D>>(model, threads);
+  return FluidPass<D, DoublePairs<D>>(model, threads);
+}
 
 }  // namespace mappm

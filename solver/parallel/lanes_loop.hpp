@@ -11,17 +11,14 @@ namespace mappm {
 
 namespace detail {
 
-MAPPM_INLINE void add_to(std::int64_t* sums, const IntLanes& given) { store_lanes(load_lanes(sums) + given, sums); }
+template <class Sum, class SumLanes>
+MAPPM_INLINE void add_to(Sum* sums, const SumLanes& given) {
+  store_lanes(load_lanes(sums) + given, sums);
+}
 
-template <int D>
-struct LaneSums {
-  Vec<D, IntLanes> impulse, shift;
-  IntLanes density;
-};
-
-template <int D>
-MAPPM_INLINE NeighbourSums<D> total(const LaneSums<D>& sums) {
-  NeighbourSums<D> result;
+template <int D, class SumLanes>
+MAPPM_INLINE PairResult<D, Scalar<SumLanes>> total(const PairResult<D, SumLanes>& sums) {
+  PairResult<D, Scalar<SumLanes>> result;
   for (int axis = 0; axis < D; ++axis) {
     result.impulse[axis] = sum_of_lanes(sums.impulse[axis]);
     result.shift[axis] = sum_of_lanes(sums.shift[axis]);
@@ -31,36 +28,38 @@ MAPPM_INLINE NeighbourSums<D> total(const LaneSums<D>& sums) {
 }
 
 /// Separation of a block of lanes and a centre, from j to i of the law. With `lanes_first` the lanes are i.
-template <bool lanes_first, int D>
-MAPPM_INLINE Vec<D, Lanes> separation_of_block(const PairLaw<D>& law, const PairBlock<D>& block,
-                                               const Vec<D, double>& centre) {
-  Vec<D, Lanes> d;
+template <bool lanes_first, int D, class Numbers>
+MAPPM_INLINE Vec<D, typename Numbers::RealLanes> separation_of_block(const Numbers& numbers,
+                                                                     const PairBlock<D, Numbers>& block,
+                                                                     const Vec<D, typename Numbers::Place>& centre) {
+  Vec<D, typename Numbers::RealLanes> d;
   for (int axis = 0; axis < D; ++axis) {
-    const Lanes x = load_lanes(block.x[axis]);
-    d[axis] = lanes_first ? x - Lanes(centre[axis]) : Lanes(centre[axis]) - x;
+    const auto x = load_lanes(block.x[axis]);
+    const decltype(x) of_centre(centre[axis]);
+    d[axis] = lanes_first ? Numbers::apart(x, of_centre) : Numbers::apart(of_centre, x);
   }
-  return separation(law, d);
+  return separation(numbers.law(), d);
 }
 
 /// One block of lanes at the distances `q`.
-template <class Kernel, bool transport, bool lanes_first, int D, class Beta>
-MAPPM_INLINE void pair_block(const PairLaw<D>& law, PairBlock<D>& block, const PairCentre<D>& centre, const Lanes& q,
-                             const Beta& beta, LaneSums<D>& sums) {
-  const Vec<D, Lanes> r = separation_of_block<lanes_first>(law, block, centre.x);
-  FluidPair<D, Lanes> pair;
+template <class Kernel, bool transport, bool lanes_first, int D, class Numbers, class RealLanes, class Beta, class Sums>
+MAPPM_INLINE void pair_block(const Numbers& numbers, PairBlock<D, Numbers>& block, const PairCentre<D, Numbers>& centre,
+                             const RealLanes& q, const Beta& beta, Sums& sums) {
+  const Vec<D, RealLanes> r = separation_of_block<lanes_first>(numbers, block, centre.x);
+  FluidPair<D, RealLanes> pair;
   for (int axis = 0; axis < D; ++axis) {
-    const Lanes v = load_lanes(block.v[axis]);
-    pair.v[axis] = lanes_first ? v - Lanes(centre.v[axis]) : Lanes(centre.v[axis]) - v;
+    const RealLanes v = load_lanes(block.v[axis]);
+    pair.v[axis] = lanes_first ? v - RealLanes(centre.v[axis]) : RealLanes(centre.v[axis]) - v;
   }
-  pair.v2 = Lanes(centre.volume.v2) + load_lanes(block.v2);
-  pair.pv2 = Lanes(centre.volume.pv2) + load_lanes(block.pv2);
-  const PairResult<D, Lanes> given = fluid_pair<Kernel, transport>(law, pair, r, q, beta(r));
+  pair.v2 = RealLanes(centre.volume.v2) + load_lanes(block.v2);
+  pair.pv2 = RealLanes(centre.volume.pv2) + load_lanes(block.pv2);
+  const auto given = fluid_pair<Kernel, transport, typename Numbers::Rounding>(numbers.law(), pair, r, q, beta(r));
   for (int axis = 0; axis < D; ++axis) {
-    const IntLanes impulse = lanes_first ? given.impulse[axis] : -given.impulse[axis];
+    const auto impulse = lanes_first ? given.impulse[axis] : -given.impulse[axis];
     add_to(block.impulse[axis], impulse);
     sums.impulse[axis] -= impulse;
     if constexpr (transport) {
-      const IntLanes shift = lanes_first ? given.shift[axis] : -given.shift[axis];
+      const auto shift = lanes_first ? given.shift[axis] : -given.shift[axis];
       add_to(block.shift[axis], shift);
       sums.shift[axis] -= shift;
     }
@@ -73,8 +72,12 @@ MAPPM_INLINE void pair_block(const PairLaw<D>& law, PairBlock<D>& block, const P
 
 /// The partners of some particles, the centres, as blocks of lanes. Ranges, distances and pairs are worked out for all
 /// of them in turn, in loops whose length the processor can guess.
-template <int D>
+template <int D, class Numbers>
 class PartnerLists {
+  using Real = typename Numbers::Real;
+  using RealLanes = typename Numbers::RealLanes;
+  using Places = Vec<D, typename Numbers::Place>;
+
  public:
   void clear() {
     centres_.clear();
@@ -86,7 +89,7 @@ class PartnerLists {
 
   /// Adds a particle with its ranges of places: range(n) for n < count.
   template <class RangeOf>
-  MAPPM_INLINE void add(std::uint32_t particle, const Vec<D, double>& x, std::size_t count, RangeOf&& range) {
+  MAPPM_INLINE void add(std::uint32_t particle, const Places& x, std::size_t count, RangeOf&& range) {
     make_room(size_ + count * written);
     const auto owner = static_cast<std::uint32_t>(centres_.size());
     const Columns columns = this->columns();
@@ -110,25 +113,26 @@ class PartnerLists {
   template <class Visit>
   void for_each_partner(Visit&& visit) const {
     for (std::size_t n = 0; n < size_; ++n)
-      for (int lane = 0; lane < lane_count; ++lane)
-        if (lane >= first_[n] && lane <= last_[n])
-          visit(centres_[owner_[n]].particle, block_[n] * lane_count + static_cast<std::uint32_t>(lane));
+      for (std::uint32_t lane = 0; lane < lane_count; ++lane)
+        if (const auto number = static_cast<Real>(lane); number >= first_[n] && number <= last_[n])
+          visit(centres_[owner_[n]].particle, block_[n] * lane_count + lane);
   }
 
   /// Works out the distances of all blocks, and drops those that have no partner within the cutoff.
   template <bool lanes_first>
-  MAPPM_INLINE void measure(const PairLaw<D>& law, const PairBlock<D>* blocks) {
+  MAPPM_INLINE void measure(const Numbers& numbers, const PairBlock<D, Numbers>* blocks) {
     make_room(size_ + ahead);
     const Columns columns = this->columns();
     const Centre* const centres = centres_.data();
     for (std::size_t n = 0; n < size_; ++n) {
-      const Vec<D, Lanes> r =
-          detail::separation_of_block<lanes_first>(law, blocks[columns.block[n]], centres[columns.owner[n]].x);
+      const Vec<D, RealLanes> r =
+          detail::separation_of_block<lanes_first>(numbers, blocks[columns.block[n]], centres[columns.owner[n]].x);
       // At least 1 in lanes that are no partners.
-      const Lanes beside = larger(Lanes(columns.first[n]) - lane_numbers(), lane_numbers() - Lanes(columns.last[n]));
-      const Lanes square = larger(dot(r, r), beside);
+      const RealLanes beside = larger(RealLanes(columns.first[n]) - lane_numbers<RealLanes>(),
+                                      lane_numbers<RealLanes>() - RealLanes(columns.last[n]));
+      const RealLanes square = larger(dot(r, r), beside);
       square.copy_to(columns.distance + n * lane_count, std::experimental::vector_aligned);
-      columns.used[n] = any_below(square, 1.0) ? 1 : 0;
+      columns.used[n] = any_below(square, Real(1)) ? 1 : 0;
     }
     // By itself: in the loop above every load would wait for the place of the store before it.
     std::size_t kept = 0, n = 0;
@@ -154,7 +158,7 @@ class PartnerLists {
     };
     // A root takes as long as half of the rest: it is taken some blocks ahead.
     const auto take_root = [&](std::size_t n) __attribute__((always_inline)) {
-      cut_distance(Lanes(distances(n), std::experimental::vector_aligned))
+      cut_distance(RealLanes(distances(n), std::experimental::vector_aligned))
           .copy_to(distances(n), std::experimental::vector_aligned);
     };
     for (std::size_t n = 0; n < ahead; ++n) take_root(n);
@@ -163,7 +167,7 @@ class PartnerLists {
       begin(centre.particle);
       for (; n < centre.end; ++n) {
         take_root(n + ahead);
-        visit(columns.block[n], Lanes(distances(n), std::experimental::vector_aligned));
+        visit(columns.block[n], RealLanes(distances(n), std::experimental::vector_aligned));
       }
       end(centre.particle);
     }
@@ -175,13 +179,13 @@ class PartnerLists {
   static constexpr std::size_t ahead = 3;
   struct Centre {
     std::uint32_t particle, end;  // and where its blocks end
-    Vec<D, double> x;
+    Places x;
   };
   /// Of each entry its block, its centre, its first and its last lane that is a partner, and distances.
   struct Columns {
     std::uint32_t *block, *owner, *from;
     std::uint8_t* used;
-    double *first, *last, *distance;
+    Real *first, *last, *distance;
   };
   Columns columns() {
     return {block_.data(), owner_.data(), from_.data(), used_.data(), first_.data(), last_.data(), distance_.data()};
@@ -193,19 +197,19 @@ class PartnerLists {
   /// Blocks from `begin` on; those behind the range will be overwritten.
   MAPPM_INLINE static void write(const Columns& columns, std::size_t at, std::uint32_t owner, std::uint32_t begin,
                                  std::uint32_t first, std::uint32_t end) {
-    const double from = static_cast<std::int32_t>(first - begin * lane_count);
-    const double to = static_cast<std::int32_t>(end - 1 - begin * lane_count);
+    const auto from = static_cast<Real>(static_cast<std::int32_t>(first - begin * lane_count));
+    const auto to = static_cast<Real>(static_cast<std::int32_t>(end - 1 - begin * lane_count));
     for (std::uint32_t n = 0; n < written; ++n) columns.block[at + n] = begin + n;
     for (std::uint32_t n = 0; n < written; ++n) columns.owner[at + n] = owner;
     for (std::uint32_t n = 0; n < written; n += lane_count) {
-      const Lanes passed = (lane_numbers() + static_cast<double>(n)) * static_cast<double>(lane_count);
-      (Lanes(from) - passed).copy_to(columns.first + at + n, std::experimental::element_aligned);
-      (Lanes(to) - passed).copy_to(columns.last + at + n, std::experimental::element_aligned);
+      const RealLanes passed = (lane_numbers<RealLanes>() + static_cast<Real>(n)) * static_cast<Real>(lane_count);
+      (RealLanes(from) - passed).copy_to(columns.first + at + n, std::experimental::element_aligned);
+      (RealLanes(to) - passed).copy_to(columns.last + at + n, std::experimental::element_aligned);
     }
   }
   /// The ranges from number n on, of any length.
   template <class RangeOf>
-  [[gnu::noinline]] void add_rest(std::uint32_t particle, const Vec<D, double>& x, std::size_t count, RangeOf&& range,
+  [[gnu::noinline]] void add_rest(std::uint32_t particle, const Places& x, std::size_t count, RangeOf&& range,
                                   std::size_t n) {
     const auto owner = static_cast<std::uint32_t>(centres_.size());
     for (; n < count; ++n) {
@@ -233,19 +237,20 @@ class PartnerLists {
   std::size_t size_ = 0;
   Column<std::uint32_t> block_, owner_, from_;
   Column<std::uint8_t> used_;
-  Column<double> first_, last_, distance_;
+  Column<Real> first_, last_, distance_;
   std::vector<Centre> centres_;
 };
 
 /// All pairs of the lists: adds to the sums of the partners, and calls receive(particle, sums) with what each centre
 /// receives. centre_of(n) gives a PairCentre, beta_of(n) a function of the separation. Zeros are added to lanes beside
 /// the partners. Blocks of the lists that lie beyond the cutoff are dropped.
-template <class Kernel, bool transport, bool lanes_first, int D, class CentreOf, class BetaOf, class Receive>
-void sum_lists(const PairLaw<D>& law, PairBlock<D>* const blocks, PartnerLists<D>& lists, CentreOf&& centre_of,
-               BetaOf&& beta_of, Receive&& receive) {
-  lists.template measure<lanes_first>(law, blocks);
-  detail::LaneSums<D> sums;
-  PairCentre<D> centre;
+template <class Kernel, bool transport, bool lanes_first, int D, class Numbers, class CentreOf, class BetaOf,
+          class Receive>
+void sum_lists(const Numbers& numbers, PairBlock<D, Numbers>* const blocks, PartnerLists<D, Numbers>& lists,
+               CentreOf&& centre_of, BetaOf&& beta_of, Receive&& receive) {
+  lists.template measure<lanes_first>(numbers, blocks);
+  PairResult<D, decltype(load_lanes(blocks->density))> sums;
+  PairCentre<D, Numbers> centre;
   std::decay_t<decltype(beta_of(0))> beta = beta_of(0);
   lists.for_each_block(
       [&](std::uint32_t n) __attribute__((always_inline)) {
@@ -253,8 +258,8 @@ void sum_lists(const PairLaw<D>& law, PairBlock<D>* const blocks, PartnerLists<D
         beta = beta_of(n);
         sums = {};
       },
-      [&](std::uint32_t block, const Lanes& q) __attribute__((always_inline)) {
-        detail::pair_block<Kernel, transport, lanes_first>(law, blocks[block], centre, q, beta, sums);
+      [&](std::uint32_t block, const typename Numbers::RealLanes& q) __attribute__((always_inline)) {
+        detail::pair_block<Kernel, transport, lanes_first>(numbers, blocks[block], centre, q, beta, sums);
       },
       [&](std::uint32_t n) __attribute__((always_inline)) { receive(n, detail::total(sums)); });
 }

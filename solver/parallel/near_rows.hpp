@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/lanes.hpp"
-#include "parallel/pair_blocks.hpp"
+#include "particles/cell_grid.hpp"
 
 namespace mappm {
 
@@ -39,7 +39,8 @@ class NearRows {
  public:
   /// The rows at `offsets` from `row` that lie in the grid; `inner`: only those, and of them the cells, in the region.
   /// Ranges are given in places of `blocks`.
-  void fit(const CellGrid<D>& grid, const PairBlocks<D>& blocks, const std::vector<Vec<D, int>>& offsets,
+  template <class Blocks>
+  void fit(const CellGrid<D>& grid, const Blocks& blocks, const std::vector<Vec<D, int>>& offsets,
            const Vec<D, int>& row, bool inner) {
     row_ = row;
     lowest_ = inner ? grid.margin(0) : 0;

@@ -8,32 +8,36 @@
 #include "base/column.hpp"
 #include "particles/cell_grid.hpp"
 #include "particles/model.hpp"
-#include "physics/pseudo_particle.hpp"
-#include "physics/state_equation.hpp"
+#include "physics/pair_numbers.hpp"
 
 namespace mappm {
 
-template <int D>
-struct alignas(sizeof(Lanes)) PairBlock {
-  double x[D][lane_count], v[D][lane_count];
-  double v2[lane_count], pv2[lane_count];
-  std::int64_t impulse[D][lane_count], shift[D][lane_count], density[lane_count];
+template <int D, class Numbers>
+struct alignas(sizeof(typename Numbers::RealLanes)) PairBlock {
+  typename Numbers::Place x[D][lane_count];
+  typename Numbers::Real v[D][lane_count];
+  typename Numbers::Real v2[lane_count], pv2[lane_count];
+  typename Numbers::Sum impulse[D][lane_count], shift[D][lane_count], density[lane_count];
 };
 
 /// The one particle of a loop over blocks: a PP or an FP.
-template <int D>
+template <int D, class Numbers>
 struct PairCentre {
-  Vec<D, double> x, v;
-  VolumeTerms<double> volume;
+  Vec<D, typename Numbers::Place> x;
+  Vec<D, typename Numbers::Real> v;
+  VolumeTerms<typename Numbers::Real> volume;
 };
 
 /// All PPs in the order of a grid. Each plane of cells begins a block, so no two planes share one: a place is the index
 /// of a PP in that order and the gaps before it.
-template <int D>
+template <int D, class Numbers>
 class PairBlocks {
  public:
+  using Block = PairBlock<D, Numbers>;
+  using Sums = PairResult<D, typename Numbers::Sum>;
+
   /// Sums are set to zero. `fluid` is in the order of `grid`.
-  void fill(const Model<D>& model, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
+  void fill(const Model<D>& model, const Numbers& numbers, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
     for (auto& values : fluid.field) {
       // Whole lanes are read behind the last particle. They are no partners, but 0 times NaN would not be 0.
       const std::size_t count = values.size();
@@ -55,10 +59,10 @@ class PairBlocks {
     blocks_.resize(place / lane_count);
     for (int plane = 0; plane < planes; ++plane)
       for (std::uint32_t i = grid.plane_start(plane); i < grid.plane_start(plane + 1); i += lane_count)
-        fill_block(model, fluid, i, blocks_[(i + gap(plane)) / lane_count]);
+        fill_block(model, numbers, fluid, i, blocks_[(i + gap(plane)) / lane_count]);
   }
 
-  PairBlock<D>* data() { return blocks_.data(); }
+  Block* data() { return blocks_.data(); }
   std::size_t place_count() const { return blocks_.size() * lane_count; }
   /// The block of a place alone, with sums of zero.
   PairBlocks one(std::uint32_t place) const {
@@ -74,10 +78,10 @@ class PairBlocks {
     return index + gap(static_cast<int>(plane));
   }
 
-  MAPPM_INLINE PairCentre<D> centre(std::uint32_t place) const {
-    const PairBlock<D>& block = blocks_[place / lane_count];
+  MAPPM_INLINE PairCentre<D, Numbers> centre(std::uint32_t place) const {
+    const Block& block = blocks_[place / lane_count];
     const std::uint32_t lane = place % lane_count;
-    PairCentre<D> centre;
+    PairCentre<D, Numbers> centre;
     for (int axis = 0; axis < D; ++axis) {
       centre.x[axis] = block.x[axis][lane];
       centre.v[axis] = block.v[axis][lane];
@@ -85,8 +89,8 @@ class PairBlocks {
     centre.volume = {block.v2[lane], block.pv2[lane]};
     return centre;
   }
-  MAPPM_INLINE void add(std::uint32_t place, const NeighbourSums<D>& sums) {
-    PairBlock<D>& block = blocks_[place / lane_count];
+  MAPPM_INLINE void add(std::uint32_t place, const Sums& sums) {
+    Block& block = blocks_[place / lane_count];
     const std::uint32_t lane = place % lane_count;
     for (int axis = 0; axis < D; ++axis) {
       block.impulse[axis][lane] += sums.impulse[axis];
@@ -94,10 +98,10 @@ class PairBlocks {
     }
     block.density[lane] += sums.density;
   }
-  NeighbourSums<D> sums(std::uint32_t place) const {
-    const PairBlock<D>& block = blocks_[place / lane_count];
+  Sums sums(std::uint32_t place) const {
+    const Block& block = blocks_[place / lane_count];
     const std::uint32_t lane = place % lane_count;
-    NeighbourSums<D> sums;
+    Sums sums;
     for (int axis = 0; axis < D; ++axis) {
       sums.impulse[axis] = block.impulse[axis][lane];
       sums.shift[axis] = block.shift[axis][lane];
@@ -107,26 +111,29 @@ class PairBlocks {
   }
 
  private:
-  static void fill_block(const Model<D>& model, const FluidParticles<D>& fluid, std::size_t i, PairBlock<D>& block) {
+  static void fill_block(const Model<D>& model, const Numbers& numbers, const FluidParticles<D>& fluid, std::size_t i,
+                         Block& block) {
+    using Real = typename Numbers::Real;
     for (int axis = 0; axis < D; ++axis) {
-      store_lanes(load_lanes(&fluid.x(axis)[i]), block.x[axis]);
-      store_lanes(load_lanes(&fluid.v(axis)[i]), block.v[axis]);
+      store_lanes(numbers.place(axis, load_lanes(&fluid.x(axis)[i])), block.x[axis]);
+      store_lanes(lanes_of<Real>(load_lanes(&fluid.v(axis)[i])), block.v[axis]);
     }
     const auto volume = volume_terms(load_lanes(&fluid.density()[i]), model.rest_density, 1.0, model.background);
-    store_lanes(volume.v2, block.v2);
-    store_lanes(volume.pv2, block.pv2);
+    store_lanes(lanes_of<Real>(volume.v2), block.v2);
+    store_lanes(lanes_of<Real>(volume.pv2), block.pv2);
     clear(block);
   }
-  static void clear(PairBlock<D>& block) {
+  static void clear(Block& block) {
+    using SumLanes = decltype(load_lanes(block.density));
     for (int axis = 0; axis < D; ++axis) {
-      store_lanes(IntLanes(0), block.impulse[axis]);
-      store_lanes(IntLanes(0), block.shift[axis]);
+      store_lanes(SumLanes(0), block.impulse[axis]);
+      store_lanes(SumLanes(0), block.shift[axis]);
     }
-    store_lanes(IntLanes(0), block.density);
+    store_lanes(SumLanes(0), block.density);
   }
 
   std::vector<std::uint32_t> starts_, gaps_;  // of each plane: its first index; its places less its indices
-  Column<PairBlock<D>> blocks_;
+  Column<Block> blocks_;
 };
 
 }  // namespace mappm

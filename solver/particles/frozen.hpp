@@ -6,6 +6,7 @@
 
 #include "particles/solid_step.hpp"
 #include "physics/state_equation.hpp"
+#include "physics/wall.hpp"
 
 namespace mappm {
 
@@ -43,6 +44,30 @@ void place_frozen(const Model<D>& model, const SolidInStep<D>& body, std::uint32
     to.push_back({placed, volume, frozen[k].depth, frozen[k].own_density, solid, k});
   }
 }
+
+/// beta of the pairs of one FP, as a function of the separation from it; in one number or in lanes.
+template <int D, class Real>
+class NoSlipFactor {
+ public:
+  NoSlipFactor(const Model<D>& model, const FrozenInStep<D>& fp)
+      : extrapolated_(model.terms.extrapolated),
+        depth_(static_cast<Real>(fp.depth)),
+        nearest_(static_cast<Real>(model.no_slip_nearest)) {
+    for (int axis = 0; axis < D; ++axis) normal_[axis] = static_cast<Real>(fp.place.normal[axis]);
+  }
+  template <class Wide>
+  MAPPM_INLINE Wide operator()(const Vec<D, Wide>& r) const {
+    if (!extrapolated_) return constant<Wide>(1.0);
+    Vec<D, Wide> normal;
+    for (int axis = 0; axis < D; ++axis) normal[axis] = Wide(normal_[axis]);
+    return no_slip_factor(r, normal, Wide(depth_), nearest_);
+  }
+
+ private:
+  bool extrapolated_;
+  Vec<D, Real> normal_;
+  Real depth_, nearest_;
+};
 
 /// Adds the impulse that one FP received in a step (iota), and its torque, to those of its solid.
 template <int D>

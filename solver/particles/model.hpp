@@ -11,6 +11,7 @@
 #include "physics/flow_field.hpp"
 #include "physics/fluid_pair.hpp"
 #include "physics/kernel.hpp"
+#include "physics/pair_numbers.hpp"
 #include "physics/rigid_body.hpp"
 
 namespace mappm {
@@ -26,6 +27,7 @@ struct Terms {
   bool motion = false;        // some solid is not fixed
   bool rotation = false;      // some free solid rotates
   bool contact = false;       // contact law given, and at least two solids, or one and a wall
+  bool single = false;        // pairs of PPs and FPs in single precision
 };
 
 /// A face of a wall, for contact of solids with it. Its FPs are solids of their own.
@@ -105,6 +107,17 @@ void with_pair_law(const Model<D>& model, F&& f) {
     case KernelKind::mps:
       return with_kernel(MpsWeight{});
   }
+}
+
+/// As `with_pair_law`, f(Kernel{}, bool_constant<transport>{}, numbers): with the numbers of the model's precision.
+template <int D, class F>
+void with_pair_numbers(const Model<D>& model, F&& f) {
+  with_pair_law(model, [&](auto kernel, auto transport) {
+    if (model.terms.single)
+      f(kernel, transport, SinglePairs<D>(model.pair, model.rest_density));
+    else
+      f(kernel, transport, DoublePairs<D>(model.pair, model.rest_density));
+  });
 }
 
 }  // namespace mappm

@@ -13,15 +13,16 @@
 
 namespace mappm {
 
-/// Constants of the pair law, folded once. Internal units: rcut = 1, PP mass = 1, c = 1.
-template <int D>
+/// Constants of the pair law, folded once. Internal units: rcut = 1, PP mass = 1, c = 1. The quanta are those of the
+/// state, in single precision the multiples of them that `SinglePairs` counts in.
+template <int D, class Real = double>
 struct PairLaw {
-  Vec<D, double> length;  // length of one position quantum, per axis
-  double force;           // G scale * dt / iota: profile to impulse quanta
-  double viscosity;       // mu
-  Vec<D, double> shift;   // impulse quanta of p_s = 1 to displacement in position quanta, per axis
-  double weight;          // W scale / density quantum
-  double rate;            // -W'/r scale * dt / density quantum
+  Vec<D, Real> length;  // length of one position quantum, per axis
+  Real force;           // G scale * dt / iota: profile to impulse quanta
+  Real viscosity;       // mu
+  Vec<D, Real> shift;   // impulse quanta of p_s = 1 to displacement in position quanta, per axis
+  Real weight;          // W scale / density quantum
+  Real rate;            // -W'/r scale * dt / density quantum
 };
 
 /// What the law reads of one pair. `d` is the exact difference of positions in quanta, i minus j; `v` of velocities.
@@ -33,47 +34,57 @@ struct FluidPair {
 };
 
 /// What one pair gives to i. To j it gives the impulse and the shift with the other sign, and the same density.
-template <int D, class Real>
+template <int D, class Sum>
 struct PairResult {
-  Vec<D, Fixed<Real>> impulse;
-  Vec<D, Fixed<Real>> shift;
-  Fixed<Real> density;
+  Vec<D, Sum> impulse, shift;
+  Sum density{};
+};
+
+/// How a pair's contributions become what is summed.
+struct Rounded {
+  template <class Real>
+  using Sum = Fixed<Real>;
+  template <class Real>
+  MAPPM_INLINE static Fixed<Real> of(const Real& x) {
+    return to_fixed(x);
+  }
 };
 
 template <int D, class Real>
-MAPPM_INLINE Vec<D, Real> separation(const PairLaw<D>& law, const Vec<D, Real>& d) {
+MAPPM_INLINE Vec<D, Real> separation(const PairLaw<D, Scalar<Real>>& law, const Vec<D, Real>& d) {
   Vec<D, Real> r;
   for (int axis = 0; axis < D; ++axis) r[axis] = d[axis] * Real(law.length[axis]);
   return r;
 }
 
-/// Distance in units of rcut from its square, cut at 1: beyond the cutoff every profile is zero, so no branch is needed.
+/// Distance in units of rcut from its square, cut at 1: beyond the cutoff every profile is zero, so no branch is
+/// needed.
 template <class Real>
 MAPPM_INLINE Real cut_distance(const Real& square) {
-  return smaller(square_root(square), Real(1.0));
+  return smaller(square_root(square), constant<Real>(1.0));
 }
 
 /// `beta` is 1 between PPs and `no_slip_factor` between a PP and an FP.
-template <class Kernel, bool transport, int D, class Real>
-MAPPM_INLINE PairResult<D, Real> fluid_pair(const PairLaw<D>& law, const FluidPair<D, Real>& pair,
-                                            const Vec<D, Real>& r, const Real& q, const Real& beta) {
+template <class Kernel, bool transport, class Rounding = Rounded, int D, class Real>
+MAPPM_INLINE auto fluid_pair(const PairLaw<D, Scalar<Real>>& law, const FluidPair<D, Real>& pair, const Vec<D, Real>& r,
+                             const Real& q, const Real& beta) {
   const KernelProfile<Real> kernel = Kernel::template at<Real>(q);
   const Real g = kernel.gradient * Real(law.force);
   const Real pressure = g * pair.pv2;
   const Real shifting = g * pair.v2;
   const Real friction = shifting * (beta * Real(law.viscosity));
-  PairResult<D, Real> result;
+  PairResult<D, typename Rounding::template Sum<Real>> result;
   for (int axis = 0; axis < D; ++axis) {
-    result.impulse[axis] = to_fixed(pressure * r[axis] - friction * pair.v[axis]);
-    if constexpr (transport) result.shift[axis] = to_fixed(shifting * r[axis] * Real(law.shift[axis]));
+    result.impulse[axis] = Rounding::of(pressure * r[axis] - friction * pair.v[axis]);
+    if constexpr (transport) result.shift[axis] = Rounding::of(shifting * r[axis] * Real(law.shift[axis]));
   }
-  result.density = to_fixed(kernel.weight * Real(law.weight) - kernel.rate * Real(law.rate) * dot(r, pair.v));
+  result.density = Rounding::of(kernel.weight * Real(law.weight) - kernel.rate * Real(law.rate) * dot(r, pair.v));
   return result;
 }
 
 /// The density that two FPs of different solids give each other: as between PPs, without force.
 template <class Kernel, int D, class Real>
-MAPPM_INLINE Fixed<Real> pair_density(const PairLaw<D>& law, const Vec<D, Real>& r, const Vec<D, Real>& v,
+MAPPM_INLINE Fixed<Real> pair_density(const PairLaw<D, Scalar<Real>>& law, const Vec<D, Real>& r, const Vec<D, Real>& v,
                                       const Real& q) {
   const KernelProfile<Real> kernel = Kernel::template at<Real>(q);
   return to_fixed(kernel.weight * Real(law.weight) - kernel.rate * Real(law.rate) * dot(r, v));

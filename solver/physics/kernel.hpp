@@ -22,9 +22,9 @@ struct WendlandC2 {
   static constexpr double self_weight = 1.0;
   template <class Real>
   MAPPM_INLINE static KernelProfile<Real> at(const Real& q) {
-    const Real t = Real(1.0) - q;
+    const Real t = constant<Real>(1.0) - q;
     const Real cube = t * t * t;
-    return {cube * t * (Real(1.0) + Real(4.0) * q), cube, Real(20.0) * cube};
+    return {cube * t * (constant<Real>(1.0) + constant<Real>(4.0) * q), cube, constant<Real>(20.0) * cube};
   }
 };
 
@@ -34,9 +34,9 @@ struct Lucy {
   static constexpr double self_weight = 1.0;
   template <class Real>
   MAPPM_INLINE static KernelProfile<Real> at(const Real& q) {
-    const Real t = Real(1.0) - q;
+    const Real t = constant<Real>(1.0) - q;
     const Real square = t * t;
-    return {square * t * (Real(1.0) + Real(3.0) * q), square, Real(12.0) * square};
+    return {square * t * (constant<Real>(1.0) + constant<Real>(3.0) * q), square, constant<Real>(12.0) * square};
   }
 };
 
@@ -47,9 +47,10 @@ struct MpsWeight {
   static constexpr double self_weight = 0.0;
   template <class Real>
   MAPPM_INLINE static KernelProfile<Real> at(const Real& q) {
-    const Real inverse = Real(1.0) / larger(q, Real(1e-3));
-    const Real w = inverse - Real(1.0);
-    const Real inside = smaller(Real(1.0), w * Real(1e300));  // the slope jumps at the cutoff: 1 within, 0 at q = 1
+    const Real inverse = constant<Real>(1.0) / larger(q, constant<Real>(1e-3));
+    const Real w = inverse - constant<Real>(1.0);
+    // The slope jumps at the cutoff: 1 within, 0 at q = 1.
+    const Real inside = smaller(constant<Real>(1.0), w * constant<Real>(1e30));
     return {w, w * inverse * inverse, inverse * inverse * inverse * inside};
   }
 };

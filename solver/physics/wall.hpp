@@ -11,9 +11,10 @@ namespace mappm {
 ///   beta = 1 + min(d_w / d_f, 10),   d_f = max(distance of the PP to the tangent plane at the FP, dx / 4)
 /// r: PP minus FP; normal: outward at the FP; depth: d_w; nearest: dx / 4. All lengths in one unit.
 template <int D, class Real>
-MAPPM_INLINE Real no_slip_factor(const Vec<D, Real>& r, const Vec<D, Real>& normal, const Real& depth, double nearest) {
+MAPPM_INLINE Real no_slip_factor(const Vec<D, Real>& r, const Vec<D, Real>& normal, const Real& depth,
+                                 Scalar<Real> nearest) {
   const Real distance = larger(dot(r, normal) - depth, Real(nearest));
-  return Real(1.0) + smaller(depth / distance, Real(10.0));
+  return constant<Real>(1.0) + smaller(depth / distance, constant<Real>(10.0));
 }
 
 }  // namespace mappm

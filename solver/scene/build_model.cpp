@@ -76,6 +76,7 @@ Terms find_terms(const Scene& scene, const Matter& matter) {
   terms.solids = !scene.bodies.empty();
   terms.transport = terms.fluid && scene.fluid.transport;
   terms.extrapolated = terms.fluid && terms.solids && scene.fluid.no_slip == NoSlip::extrapolated;
+  terms.single = terms.fluid && scene.fluid.precision == Precision::single;
   terms.body_force = norm(scene.force.fluid) > 0.0 || norm(scene.force.solid) > 0.0;
   terms.force_field = terms.fluid && scene.force.field.has_value();
   bool walls = false;

@@ -64,6 +64,8 @@ void read_fluid_law(const Fields& table, FluidScene& fluid) {
   fluid.shift_pressure = table.number("shift_pressure", Quantity::plain, Sign::positive, 1.0);
   if (!fluid.transport && table.has("shift_pressure"))
     table.fail("shift_pressure", "acts with transport = true only; remove it");
+  fluid.precision = table.choice<Precision>("precision", {{"double", Precision::full}, {"single", Precision::single}},
+                                            fluid.precision);
 }
 
 void read_fluid(const Fields& table, const Triple& box, FluidScene& fluid) {

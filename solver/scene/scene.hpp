@@ -18,6 +18,7 @@ using Triple = std::array<double, 3>;  // the third entry is unused (0) in two d
 enum class Units { dimensionless, si };
 enum class Method { classic, transport };
 enum class NoSlip { plain, extrapolated };
+enum class Precision { single, full };      // full: double
 enum class Motion { free, fixed, moving };  // moving: with a prescribed constant velocity
 enum class ContactModel { none, linear, hertz };
 
@@ -41,6 +42,7 @@ struct FluidScene {
   bool transport = true;                  // default follows the method
   double background_pressure = 0.0;       // p_b in units of c^2 rho0
   double shift_pressure = 1.0;            // p_s in units of c^2 rho0
+  Precision precision = Precision::full;  // of the pair arithmetic
   Triple velocity{};                      // at the start, m/s
   std::optional<FlowField> flow;          // added to it at the start, m/s
   struct Disorder {

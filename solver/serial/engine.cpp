@@ -70,13 +70,14 @@ void SerialEngine<D>::step() {
   find_neighbours();
   sums_.assign(state_.fluid.size(), {});
   frozen_sums_.assign(frozen_.size(), {});
-  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
-    for (std::size_t i = 0; i < state_.fluid.size(); ++i) {
-      sum_over_fluid<Kernel, transport>(i);
-      sum_over_frozen<Kernel, transport>(i);
-    }
-    sum_frozen_densities<Kernel>();
-  });
+  with_pair_numbers(model_,
+                    [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>, const auto& numbers) {
+                      for (std::size_t i = 0; i < state_.fluid.size(); ++i) {
+                        sum_over_fluid<Kernel, transport>(numbers, i);
+                        sum_over_frozen<Kernel, transport>(numbers, i);
+                      }
+                      sum_frozen_densities<Kernel>();
+                    });
   const double summed = seconds_now();
   trace_partners();
   move_fluid();
@@ -113,43 +114,47 @@ void SerialEngine<D>::find_neighbours() {
   }
 }
 
+/// PP i as a pair reads it.
+template <int D>
+PairPoint<D> SerialEngine<D>::point(std::size_t i) const {
+  return {position(state_.fluid, i), velocity(state_.fluid, i), volume_[i]};
+}
+
 /// Calls visit(j, given) with what PP j gives to PP i.
 template <int D>
-template <class Kernel, bool transport, class Visit>
-void SerialEngine<D>::for_each_fluid_partner(std::size_t i, Visit&& visit) const {
-  const Vec<D, double> x = position(state_.fluid, i), v = velocity(state_.fluid, i);
-  fluid_cells_.for_each_near(x, [&](int neighbour) {
+template <class Kernel, bool transport, class Numbers, class Visit>
+void SerialEngine<D>::for_each_fluid_partner(const Numbers& numbers, std::size_t i, Visit&& visit) const {
+  const PairPoint<D> one = point(i);
+  fluid_cells_.for_each_near(one.x, [&](int neighbour) {
     const auto j = static_cast<std::size_t>(neighbour);
     if (j == i) return;
-    const FluidPair<D, double> pair{nearest_vector(x, position(state_.fluid, j)), v - velocity(state_.fluid, j),
-                                    volume_[i].v2 + volume_[j].v2, volume_[i].pv2 + volume_[j].pv2};
-    const Vec<D, double> r = separation(model_.pair, pair.d);
-    visit(j, fluid_pair<Kernel, transport>(model_.pair, pair, r, cut_distance(dot(r, r)), 1.0));
+    const auto pair = pair_of(numbers, one, point(j), nearest_difference);
+    const auto r = separation(numbers.law(), pair.d);
+    const auto beta = static_cast<typename Numbers::Real>(1);
+    visit(j, numbers.sums(fluid_pair<Kernel, transport>(numbers.law(), pair, r, cut_distance(dot(r, r)), beta)));
   });
 }
 
 /// Calls visit(k, given) with what FP k gives to PP i.
 template <int D>
-template <class Kernel, bool transport, class Visit>
-void SerialEngine<D>::for_each_frozen_partner(std::size_t i, Visit&& visit) const {
-  const Vec<D, double> x = position(state_.fluid, i), v = velocity(state_.fluid, i);
-  frozen_cells_.for_each_near(x, [&](int neighbour) {
+template <class Kernel, bool transport, class Numbers, class Visit>
+void SerialEngine<D>::for_each_frozen_partner(const Numbers& numbers, std::size_t i, Visit&& visit) const {
+  const PairPoint<D> one = point(i);
+  frozen_cells_.for_each_near(one.x, [&](int neighbour) {
     const auto k = static_cast<std::size_t>(neighbour);
     const FrozenInStep<D>& fp = frozen_[k];
-    const FluidPair<D, double> pair{nearest_vector(x, fp.place.x), v - fp.place.v, volume_[i].v2 + fp.volume.v2,
-                                    volume_[i].pv2 + fp.volume.pv2};
-    const Vec<D, double> r = separation(model_.pair, pair.d);
-    const double beta =
-        model_.terms.extrapolated ? no_slip_factor(r, fp.place.normal, fp.depth, model_.no_slip_nearest) : 1.0;
-    visit(k, fluid_pair<Kernel, transport>(model_.pair, pair, r, cut_distance(dot(r, r)), beta));
+    const NoSlipFactor<D, typename Numbers::Real> beta(model_, fp);
+    const auto pair = pair_of(numbers, one, {fp.place.x, fp.place.v, fp.volume}, nearest_difference);
+    const auto r = separation(numbers.law(), pair.d);
+    visit(k, numbers.sums(fluid_pair<Kernel, transport>(numbers.law(), pair, r, cut_distance(dot(r, r)), beta(r))));
   });
 }
 
 template <int D>
-template <class Kernel, bool transport>
-void SerialEngine<D>::sum_over_fluid(std::size_t i) {
+template <class Kernel, bool transport, class Numbers>
+void SerialEngine<D>::sum_over_fluid(const Numbers& numbers, std::size_t i) {
   NeighbourSums<D>& sums = sums_[i];
-  for_each_fluid_partner<Kernel, transport>(i, [&](std::size_t, const PairResult<D, double>& given) {
+  for_each_fluid_partner<Kernel, transport>(numbers, i, [&](std::size_t, const NeighbourSums<D>& given) {
     sums.impulse += given.impulse;
     sums.shift += given.shift;
     sums.density += given.density;
@@ -157,10 +162,10 @@ void SerialEngine<D>::sum_over_fluid(std::size_t i) {
 }
 
 template <int D>
-template <class Kernel, bool transport>
-void SerialEngine<D>::sum_over_frozen(std::size_t i) {
+template <class Kernel, bool transport, class Numbers>
+void SerialEngine<D>::sum_over_frozen(const Numbers& numbers, std::size_t i) {
   NeighbourSums<D>& sums = sums_[i];
-  for_each_frozen_partner<Kernel, transport>(i, [&](std::size_t k, const PairResult<D, double>& given) {
+  for_each_frozen_partner<Kernel, transport>(numbers, i, [&](std::size_t k, const NeighbourSums<D>& given) {
     sums.impulse += given.impulse;
     sums.shift += given.shift;
     sums.density += given.density;
@@ -180,17 +185,18 @@ void SerialEngine<D>::trace_partners() {
   traced_particle_.reset();
   if (i == ids.size()) return;
   trace_ = empty;
-  const auto keep = [&](bool is_frozen, std::uint64_t id, std::uint32_t index, const PairResult<D, double>& given) {
-    const PartnerTrace<D> partner{is_frozen, id, index, {given.impulse, given.shift, given.density}};
+  const auto keep = [&](bool is_frozen, std::uint64_t id, std::uint32_t index, const NeighbourSums<D>& given) {
+    const PartnerTrace<D> partner{is_frozen, id, index, given};
     if (partner.any()) trace_->partners.push_back(partner);
   };
-  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
-    for_each_fluid_partner<Kernel, transport>(i,
-                                              [&](std::size_t j, const auto& given) { keep(false, ids[j], 0, given); });
-    for_each_frozen_partner<Kernel, transport>(i, [&](std::size_t k, const auto& given) {
-      keep(true, state_.solids[frozen_[k].solid].id, frozen_[k].index, given);
-    });
-  });
+  with_pair_numbers(model_,
+                    [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>, const auto& numbers) {
+                      for_each_fluid_partner<Kernel, transport>(
+                          numbers, i, [&](std::size_t j, const auto& given) { keep(false, ids[j], 0, given); });
+                      for_each_frozen_partner<Kernel, transport>(numbers, i, [&](std::size_t k, const auto& given) {
+                        keep(true, state_.solids[frozen_[k].solid].id, frozen_[k].index, given);
+                      });
+                    });
 }
 
 /// An FP also counts the matter of other solids near it; its own solid's share is part of its shape.
@@ -203,7 +209,8 @@ void SerialEngine<D>::sum_frozen_densities() {
       const FrozenInStep<D>& other = frozen_[static_cast<std::size_t>(neighbour)];
       if (state_.solids[fp.solid].group == state_.solids[other.solid].group) return;
       const Vec<D, double> r = separation(model_.pair, nearest_vector(fp.place.x, other.place.x));
-      frozen_sums_[k].density += pair_density<Kernel>(model_.pair, r, fp.place.v - other.place.v, cut_distance(dot(r, r)));
+      frozen_sums_[k].density +=
+          pair_density<Kernel>(model_.pair, r, fp.place.v - other.place.v, cut_distance(dot(r, r)));
     });
   }
 }

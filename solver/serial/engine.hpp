@@ -9,7 +9,6 @@
 #include "particles/frozen.hpp"
 #include "particles/model.hpp"
 #include "particles/state.hpp"
-#include "physics/wall.hpp"
 #include "serial/neighbours.hpp"
 
 namespace mappm {
@@ -29,14 +28,15 @@ class SerialEngine {
  private:
   void place_solids();
   void find_neighbours();
-  template <class Kernel, bool transport, class Visit>
-  void for_each_fluid_partner(std::size_t i, Visit&& visit) const;
-  template <class Kernel, bool transport, class Visit>
-  void for_each_frozen_partner(std::size_t i, Visit&& visit) const;
-  template <class Kernel, bool transport>
-  void sum_over_fluid(std::size_t i);
-  template <class Kernel, bool transport>
-  void sum_over_frozen(std::size_t i);
+  PairPoint<D> point(std::size_t i) const;
+  template <class Kernel, bool transport, class Numbers, class Visit>
+  void for_each_fluid_partner(const Numbers& numbers, std::size_t i, Visit&& visit) const;
+  template <class Kernel, bool transport, class Numbers, class Visit>
+  void for_each_frozen_partner(const Numbers& numbers, std::size_t i, Visit&& visit) const;
+  template <class Kernel, bool transport, class Numbers>
+  void sum_over_fluid(const Numbers& numbers, std::size_t i);
+  template <class Kernel, bool transport, class Numbers>
+  void sum_over_frozen(const Numbers& numbers, std::size_t i);
   void trace_partners();
   template <class Kernel>
   void sum_frozen_densities();

@@ -138,6 +138,16 @@ TEST(ParallelEngine, equals_the_serial_one_with_walls_and_fixed_solids) {
 
 TEST(ParallelEngine, equals_the_serial_one_in_space) { expect_bits_of_the_serial_engine<3>(testing::spheres(), 100); }
 
+/// The scene with pairs in single precision.
+std::string in_single(const std::string& scene) {
+  return testing::replaced(scene, "viscosity", "precision = \"single\"\nviscosity");
+}
+
+TEST(ParallelEngine, equals_the_serial_one_in_single_precision) {
+  expect_bits_of_the_serial_engine<2>(in_single(testing::channel()), 200);
+  expect_bits_of_the_serial_engine<3>(in_single(testing::spheres()), 100);
+}
+
 TEST(ParallelEngine, equals_the_serial_one_with_solids_alone) {
   std::string scene = testing::replaced(testing::spheres(), "viscosity = 0.5", "particles = false");
   scene = testing::replaced(scene, "fluid = [0.0, 0.0, 0.0005]\nsolid = \"balance\"", "solid = [0.0, 0.0, 0.0005]");

@@ -29,6 +29,7 @@ wave = { amplitude = 0.05, direction = "x", gradient = "y", mode = 1 }
 steps = 1
 )";
 
+template <class Numbers>
 std::vector<NeighbourSums<2>> sums_over(const Model<2>& model, FluidParticles<2> fluid, double behind) {
   for (auto& values : fluid.field) {  // what lies in memory behind the last particle
     const std::size_t count = values.size();
@@ -43,24 +44,30 @@ std::vector<NeighbourSums<2>> sums_over(const Model<2>& model, FluidParticles<2>
     values.resize(count + 64, behind);
     values.resize(count);
   }
-  FluidPass<2> pass(model, 1);
+  FluidPass<2, Numbers> pass(model, 1);
   std::vector<NeighbourSums<2>> result;
   pass.sum(fluid, grid);
   for (std::uint32_t i = 0; i < fluid.size(); ++i) result.push_back(pass.sums(i));
   return result;
 }
 
-TEST(FluidPass, does_not_see_what_lies_behind_the_last_particle) {
+template <class Numbers>
+void expect_blindness() {
   const testing::Built<2> built(swirl);
   const State<2> state = built.state();
-  const auto clean = sums_over(built.model, state.fluid, 0.0);
-  const auto dirty = sums_over(built.model, state.fluid, std::numeric_limits<double>::quiet_NaN());
+  const auto clean = sums_over<Numbers>(built.model, state.fluid, 0.0);
+  const auto dirty = sums_over<Numbers>(built.model, state.fluid, std::numeric_limits<double>::quiet_NaN());
   ASSERT_EQ(clean.size(), dirty.size());
   for (std::size_t i = 0; i < clean.size(); ++i) {
     EXPECT_EQ(clean[i].impulse, dirty[i].impulse) << "particle " << i;
     EXPECT_EQ(clean[i].shift, dirty[i].shift) << "particle " << i;
     EXPECT_EQ(clean[i].density, dirty[i].density) << "particle " << i;
   }
+}
+
+TEST(FluidPass, does_not_see_what_lies_behind_the_last_particle) {
+  expect_blindness<DoublePairs<2>>();
+  expect_blindness<SinglePairs<2>>();
 }
 
 /// Particles at random all over the box, every fifth of them in a heap narrower than the cutoff: rows that hold many
@@ -83,12 +90,12 @@ FluidParticles<D> heap(const Model<D>& model, std::size_t count) {
 }
 
 /// The pass over a region inside the box, around which the other particles stand for ghosts, against all pairs.
-template <int D>
-void expect_sums_of_all_pairs(const char* scene, int along, int across, int threads) {
+template <int D, class Numbers>
+void expect_sums_of_all_pairs(const char* scene, std::size_t count, int along, int across, int threads) {
   SCOPED_TRACE(::testing::Message() << D << "D, cells " << along << " x " << across << ", threads " << threads);
   const testing::Built<D> built(scene);
   const Model<D>& model = built.model;
-  FluidParticles<D> fluid = heap(model, 1500);
+  FluidParticles<D> fluid = heap(model, count);
   Region<D> region;
   Vec<D, int> cells;
   for (int axis = 0; axis < D; ++axis) {
@@ -99,29 +106,32 @@ void expect_sums_of_all_pairs(const char* scene, int along, int across, int thre
   CellGrid<D> grid;
   grid.fit(region, model.pair.length, cells);
   grid.sort(fluid);
-  FluidPass<D> pass(model, threads);
+  FluidPass<D, Numbers> pass(model, threads);
+  const Numbers numbers(model.pair, model.rest_density);
   pass.sum(fluid, grid);
-  const auto place = [&](std::size_t i) {
-    Vec<D, double> x;
-    for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];
-    return x;
+  const auto point = [&](std::size_t i) {
+    PairPoint<D> result;
+    for (int axis = 0; axis < D; ++axis) {
+      result.x[axis] = fluid.x(axis)[i];
+      result.v[axis] = fluid.v(axis)[i];
+    }
+    result.volume = volume_terms(fluid.density()[i], model.rest_density, 1.0, model.background);
+    return result;
   };
   std::size_t pairs = 0;
   for (std::uint32_t i = 0; i < fluid.size(); ++i) {
-    if (!region.contains(place(i))) continue;
+    if (!region.contains(point(i).x)) continue;
     NeighbourSums<D> sums{};
-    const auto own = volume_terms(fluid.density()[i], model.rest_density, 1.0, model.background);
     for (std::size_t j = 0; j < fluid.size(); ++j) {
       if (j == i) continue;
-      const auto other = volume_terms(fluid.density()[j], model.rest_density, 1.0, model.background);
-      FluidPair<D, double> pair{place(i) - place(j), {}, own.v2 + other.v2, own.pv2 + other.pv2};
-      for (int axis = 0; axis < D; ++axis) pair.v[axis] = fluid.v(axis)[i] - fluid.v(axis)[j];
-      const Vec<D, double> r = separation(model.pair, pair.d);
-      const auto given = fluid_pair<WendlandC2, true>(model.pair, pair, r, cut_distance(dot(r, r)), 1.0);
+      const auto pair = pair_of(numbers, point(i), point(j), [](double a, double b) { return a - b; });
+      const auto r = separation(numbers.law(), pair.d);
+      const auto given = numbers.sums(fluid_pair<WendlandC2, true>(numbers.law(), pair, r, cut_distance(dot(r, r)),
+                                                                   static_cast<typename Numbers::Real>(1)));
       sums.impulse += given.impulse;
       sums.shift += given.shift;
       sums.density += given.density;
-      if (dot(r, r) < 1.0) ++pairs;
+      if (dot(r, r) < 1) ++pairs;
     }
     ASSERT_EQ(pass.sums(i).impulse, sums.impulse) << "particle " << i;
     ASSERT_EQ(pass.sums(i).shift, sums.shift) << "particle " << i;
@@ -135,8 +145,10 @@ TEST(FluidPass, sums_over_all_pairs) {
   for (const int threads : {1, 3})
     for (const int across : {1, 2, 3})
       for (const int along : {1, 8}) {
-        expect_sums_of_all_pairs<2>(swirl, along, across, threads);
-        expect_sums_of_all_pairs<3>(deep.c_str(), along, across, threads);
+        expect_sums_of_all_pairs<2, DoublePairs<2>>(swirl, 1500, along, across, threads);
+        expect_sums_of_all_pairs<3, DoublePairs<3>>(deep.c_str(), 1500, along, across, threads);
+        expect_sums_of_all_pairs<2, SinglePairs<2>>(swirl, 1000, along, across, threads);
+        expect_sums_of_all_pairs<3, SinglePairs<3>>(deep.c_str(), 1000, along, across, threads);
       }
 }
 

@@ -112,3 +112,20 @@ def test_a_restart_of_the_gas_solid_scene(tmp_path: Path) -> None:
     (checkpoint,) = (tmp_path / "restarted" / "checkpoints").iterdir()
     options = Options(ranks=3, steps=STEPS, overrides=overrides, resume=checkpoint)
     assert_all_equal([through, run(file, tmp_path / "restarted", options)], samples=11)
+
+
+@pytest.mark.parametrize("scene", ["crossing_2d", "crossing_3d"])
+def test_single_precision_has_the_same_bits_everywhere(tmp_path: Path, scene: str) -> None:
+    overrides = ("fluid.precision=single", "output.sample=20", "output.checkpoint=60")
+    variants = [Options(ranks=ranks, steps=120, overrides=overrides) for ranks in (0, 1, 2, 4)]
+    variants.append(Options(ranks=2, threads=2, steps=120, overrides=overrides))
+    file = ROOT / "cases" / scene / "case.toml"
+    runs = [run(file, tmp_path / str(i), options) for i, options in enumerate(variants)]
+    assert_all_equal(runs, samples=7)
+    assert all("single precision of pairs" in finished.record["terms"] for finished in runs)
+    run(file, tmp_path / "restarted", Options(ranks=2, steps=60, overrides=overrides))
+    (checkpoint,) = (tmp_path / "restarted" / "checkpoints").iterdir()
+    resumed = run(file, tmp_path / "restarted", Options(ranks=4, steps=120, overrides=overrides, resume=checkpoint))
+    assert_all_equal([runs[0], resumed], samples=7)
+    full = run(file, tmp_path / "double", Options(ranks=1, steps=120, overrides=overrides[1:]))
+    assert full.record["digest"] != runs[0].record["digest"]

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "base/lanes.hpp"
@@ -70,6 +71,18 @@ TEST(NearestDifference, takes_the_nearest_image) {
   EXPECT_EQ(nearest_difference(box_quanta - 1.0, 1.0), -2.0);
   EXPECT_EQ(nearest_difference(10.0, 3.0), 7.0);
   EXPECT_EQ(nearest_difference(0.5 * box_quanta, 0.0), -0.5 * box_quanta);  // half open: [-L/2, L/2)
+}
+
+TEST(FixedPoint, a_float_is_rounded_to_nearest_and_beyond_the_range_to_the_lowest_number) {
+  EXPECT_EQ(to_fixed(0.5f), 0);
+  EXPECT_EQ(to_fixed(1.5f), 2);
+  EXPECT_EQ(to_fixed(-2.5f), -2);
+  EXPECT_EQ(to_fixed(8388607.5f), 8388608);
+  EXPECT_EQ(to_fixed(0x1.fffffep30f), 2147483520);
+  constexpr std::int32_t lowest = std::numeric_limits<std::int32_t>::min();
+  for (const float beyond : {0x1p31f, -0x1p31f, 1e30f, -1e30f, std::numeric_limits<float>::infinity(),
+                             std::numeric_limits<float>::quiet_NaN()})
+    EXPECT_EQ(to_fixed(beyond), lowest) << beyond;
 }
 
 }  // namespace

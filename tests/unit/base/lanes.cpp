@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <limits>
 #include <numeric>
 
 namespace mappm {
@@ -55,6 +56,18 @@ TEST(Lanes, store_and_sum_integers) {
   EXPECT_EQ(sum_of_lanes(fixed), std::accumulate(stored.begin(), stored.end(), std::int64_t{0}));
   const IntLanes again = load_lanes(stored.data());
   for (int lane = 0; lane < lane_count; ++lane) EXPECT_EQ(again[lane], stored[lane]);
+}
+
+TEST(Lanes, floats_are_rounded_as_one_by_one) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (const float value : {0.5f, 1.5f, -2.5f, 8388607.5f, 2147483520.0f, -0x1p31f, 0x1p31f, -0x1.1p31f, infinity,
+                            -infinity, std::numeric_limits<float>::quiet_NaN()}) {
+    FloatLanes lanes(1.25f);
+    lanes[lane_count - 1] = value;
+    const Int32Lanes fixed = to_fixed(lanes);
+    EXPECT_EQ(fixed[0], 1);
+    EXPECT_EQ(fixed[lane_count - 1], to_fixed(value)) << value;
+  }
 }
 
 }  // namespace

@@ -88,8 +88,8 @@ TEST(TermNames, list_what_the_scene_declares) {
   EXPECT_EQ(term_names(Terms{}), std::vector<std::string>{"fluid"});
   Terms terms;
   terms.transport = terms.extrapolated = terms.body_force = terms.solids = terms.motion = terms.rotation = true;
-  terms.contact = terms.force_field = true;
-  EXPECT_EQ(term_names(terms).size(), 9u);
+  terms.contact = terms.force_field = terms.single = true;
+  EXPECT_EQ(term_names(terms).size(), 10u);
 }
 
 }  // namespace

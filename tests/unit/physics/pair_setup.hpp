@@ -61,7 +61,7 @@ FluidPair<D, double> random_pair(std::mt19937_64& random, const PairLaw<D>& law,
 }
 
 template <class Kernel, bool transport, int D, class Real>
-PairResult<D, Real> interact(const PairLaw<D>& law, const FluidPair<D, Real>& pair, const Real& beta) {
+auto interact(const PairLaw<D, Scalar<Real>>& law, const FluidPair<D, Real>& pair, const Real& beta) {
   const Vec<D, Real> r = separation(law, pair.d);
   return fluid_pair<Kernel, transport>(law, pair, r, cut_distance(dot(r, r)), beta);
 }

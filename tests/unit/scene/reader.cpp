@@ -15,6 +15,7 @@ TEST(SceneReader, FillsDefaults) {
   EXPECT_EQ(scene.fluid.no_slip, NoSlip::extrapolated);
   EXPECT_EQ(scene.fluid.kernel, KernelKind::wendland_c2);
   EXPECT_EQ(scene.fluid.shift_pressure, 1.0);
+  EXPECT_EQ(scene.fluid.precision, Precision::full);
   EXPECT_EQ(scene.run.step_factor, 1.0);
   EXPECT_EQ(scene.output.sample, 100u);
 }
@@ -27,6 +28,11 @@ TEST(SceneReader, ClassicMethodTurnsItsTermsOffAndSingleTermsCanBeChosen) {
   EXPECT_FALSE(mixed.fluid.transport);
   EXPECT_EQ(mixed.fluid.no_slip, NoSlip::extrapolated);
   EXPECT_EQ(mixed.fluid.kernel, KernelKind::lucy);
+}
+
+TEST(SceneReader, ReadsThePrecision) {
+  EXPECT_EQ(read(plain_fluid, {"fluid.precision=double"}).fluid.precision, Precision::full);
+  EXPECT_EQ(read(plain_fluid, {"fluid.precision=single"}).fluid.precision, Precision::single);
 }
 
 TEST(SceneReader, ReadsSiUnitsIntoBaseUnits) {
@@ -160,6 +166,10 @@ const BadInput bad_inputs[] = {
     {"shift_without_transport",
      {"fluid.transport=false", "fluid.shift_pressure=1"},
      {"fluid.shift_pressure", "remove it"}},
+    {"unknown_precision", {"fluid.precision=half"}, {"fluid.precision = 'half'", "\"single\""}},
+    {"precision_without_fluid",
+     {"fluid={particles=false, density=1, spacing=0.0625, sound_speed=1, precision=\"single\"}"},
+     {"fluid.precision = 'single'", "unknown key"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(SceneReader, BadScene, testing::ValuesIn(bad_inputs),

@@ -1,0 +1,34 @@
+// Double precision without exact sums: the pass as it would be if it added floating-point numbers, for the measurement
+// of what exactness costs (bench/pair_numbers.cpp) and for nothing else.
+#pragma once
+
+#include "physics/pair_numbers.hpp"
+
+namespace mappm {
+
+template <int D>
+class FloatingPairs : public DoublePairs<D> {
+ public:
+  struct Rounding {
+    template <class Real>
+    using Sum = Real;
+    template <class Real>
+    MAPPM_INLINE static Real of(const Real& x) {
+      return x;
+    }
+  };
+  using Sum = double;
+  using DoublePairs<D>::DoublePairs;
+
+  NeighbourSums<D> sums(const PairResult<D, double>& given) const {
+    NeighbourSums<D> sums;
+    for (int axis = 0; axis < D; ++axis) {
+      sums.impulse[axis] = to_fixed(given.impulse[axis]);
+      sums.shift[axis] = to_fixed(given.shift[axis]);
+    }
+    sums.density = to_fixed(given.density);
+    return sums;
+  }
+};
+
+}  // namespace mappm
