@@ -13,19 +13,17 @@ runs it was fitted to and others, and then applied to the paper's system (cases/
 best grid of domains. Ends with 1 where a measurement is broken, never because the machine is slow.
 """
 
-import argparse
 import os
 import subprocess
 import sys
-import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from bench.scaling import Lab, Point, doubled, keep, median_of, require_one_digest
-from bench.speed import Broken, scene_of
-from verification.errors import SolverError
+from bench.scaling import Lab, Point, doubled, median_of, require_one_digest
+from bench.speed import Broken, run_benchmark, scene_of
 from verification.solver import MPI_ENVIRONMENT, Options, Run, program
 
 PAPER_BOX, PAPER_DENSITY = (177.0, 2816.0), 12.83  # rcut; PPs to the square of rcut
@@ -91,7 +89,9 @@ def best_grid(model: CostModel, bytes_per_ghost: float, processes: int) -> tuple
     return min(fitting, key=lambda grid: predicted(model, bytes_per_ghost, grid))
 
 
-def measure(lab: Lab, quick: bool) -> dict[str, float]:
+def measure(quick: bool, repeats: int, folder: Path, say: Callable[[str], None]) -> tuple[dict[str, float], str]:
+    """Figures by "ratio NAME" or "figure NAME", and the commit they are of. Throws Broken, SolverError."""
+    lab = Lab(folder, repeats, say)
     layouts = QUICK_LAYOUTS if quick else LAYOUTS
     found: dict[str, list[Point]] = {name: [] for name in layouts}
     for done in range(lab.repeats):
@@ -121,31 +121,11 @@ def measure(lab: Lab, quick: bool) -> dict[str, float]:
         figures[f"figure paper.{processes}.domains_along_x"] = grid[0]
         figures[f"figure paper.{processes}.microseconds_per_step"] = 1e6 * seconds
         figures[f"ratio paper.{processes}.efficiency"] = alone / seconds / processes
-    return figures
+    return figures, Run(folder / "fluid").record["commit"]
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="python3 -m bench.cost_model", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="small fluids, which take seconds: to see that all works")
-    parser.add_argument("--repeats", type=int, help="rounds, at least 1; default 7, with --quick 1")
-    parser.add_argument("--json", type=Path, help="also keep the figures in this file")
-    parser.add_argument("--out", type=Path, help="folder of the runs (default: one that is removed)")
-    options = parser.parse_args()
-    repeats = options.repeats if options.repeats is not None else (1 if options.quick else 7)
-    if repeats < 1:
-        parser.error(f"--repeats {repeats}: must be at least 1")
-    with tempfile.TemporaryDirectory() as scratch:
-        lab = Lab(options.out or Path(scratch), repeats, lambda text: print(text, file=sys.stderr, flush=True))
-        try:
-            figures = measure(lab, options.quick)
-            commit = Run(lab.folder / "fluid").record["commit"]
-        except (Broken, SolverError) as error:
-            print(f"cost_model: {error}", file=sys.stderr)
-            return 1
-    command = "python3 -m bench.cost_model" + (" --quick" if options.quick else "") + f" --repeats {repeats}"
-    keep(figures, command, commit, options.json)
-    return 0
+    return run_benchmark("cost_model", __doc__, measure)
 
 
 if __name__ == "__main__":

@@ -9,19 +9,16 @@ runs within one round. Ends with 1 where a measurement is broken, never because 
 """
 
 import argparse
-import json
-import os
 import statistics
 import sys
 import tempfile
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 
-from bench.speed import SCENE, Broken, scene_of
+from bench.speed import SCENE, Broken, keep, scene_of
 from verification.errors import SolverError
-from verification.provenance import processor
+from verification.runner import cores
 from verification.solver import ROOT, Options, Run, run
 
 PAPER = ROOT / "cases" / "gas_solid_paper" / "case.toml"
@@ -172,23 +169,11 @@ def full_size(lab: Lab, processes: int, steps: int) -> dict[str, float]:
     } | {f"ratio full_size.share_{phase}": share for phase, share in shares.items() if phase not in ("output", "steps")}
 
 
-def keep(figures: dict[str, float], command: str, commit: str, file: Path | None) -> None:
-    """Prints a line a figure; writes them to the file, if there is one, with where they come from."""
-    for name, value in figures.items():
-        print(f"{name} {value:.4g}")
-    if file is None:
-        return
-    table = {"date": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC", "command": command, "commit": commit,
-             "host": f"{processor()}, {len(os.sched_getaffinity(0))} cores", "figures": figures}
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(json.dumps(table, indent=1) + "\n")
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python3 -m bench.scaling", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="small fluids, which take seconds: to see that all works")
-    parser.add_argument("--processes", type=int, default=len(os.sched_getaffinity(0)),
+    parser.add_argument("--processes", type=int, default=cores(),
                         help="the most, at least 2; default: the cores there are")
     parser.add_argument("--repeats", type=int, help="rounds, at least 1; default 5, with --quick 1")
     parser.add_argument("--json", type=Path, help="also keep the figures in this file")

@@ -18,7 +18,6 @@ from pathlib import Path
 
 from bench.speed import Broken, Meter, Speed, median_rate, median_ratio, run_benchmark, steps_for
 from reference.liggghts import sph
-from verification.provenance import provenance
 from verification.solver import ROOT, Options, Run, run
 
 FLUID = ROOT / "cases" / "sph_peer" / "case.toml"
@@ -169,14 +168,14 @@ def figures_of(name: str, scene: Suspension, found: dict[str, list[Cost]]) -> di
 
 
 def measure(quick: bool, repeats: int, folder: Path,
-            say: Callable[[str], None]) -> tuple[dict[str, float], dict[str, str]]:
-    """Figures by "ratio NAME" or "figure NAME", and where they come from. Throws Broken, SolverError."""
+            say: Callable[[str], None]) -> tuple[dict[str, float], str]:
+    """Figures by "ratio NAME" or "figure NAME", and the commit they are of. Throws Broken, SolverError."""
     meter = Meter(repeats, say)
     figures = {}
     for name, scene in (QUICK_SUSPENSIONS if quick else SUSPENSIONS).items():
         found = rounds_of(meter, name, scene, steps_for(100_000, quick), folder)
         figures |= figures_of(name, scene, found)
-    return figures, provenance(Run(folder / "mappm"))
+    return figures, Run(folder / "mappm").record["commit"]
 
 
 def main() -> int:

@@ -24,7 +24,8 @@ from pathlib import Path
 from reference.liggghts import sph
 from reference.liggghts.program import CODE, Failed, installed, run_script
 from verification.errors import SolverError
-from verification.provenance import provenance
+from verification.provenance import processor
+from verification.runner import cores
 from verification.solver import ROOT, Options, Run, run
 
 SCENE = ROOT / "cases" / "sph_peer" / "case.toml"
@@ -154,14 +155,26 @@ def over_sizes(meter: Meter, quick: bool, folder: Path) -> dict[str, float]:
     return figures
 
 
-def measure(quick: bool, repeats: int, folder: Path, say: Callable[[str], None]) -> tuple[dict[str, float], dict[str, str]]:
+def measure(quick: bool, repeats: int, folder: Path, say: Callable[[str], None]) -> tuple[dict[str, float], str]:
     """Figures by "ratio NAME" or "figure NAME", and where they come from. Throws Broken, SolverError, Failed."""
     meter = Meter(repeats, say)
     figures = against_peer(meter, quick, folder, installed()) | over_sizes(meter, quick, folder)
-    return figures, provenance(Run(folder / "mappm"))
+    return figures, Run(folder / "mappm").record["commit"]
 
 
-Measure = Callable[[bool, int, Path, Callable[[str], None]], tuple[dict[str, float], dict[str, str]]]
+Measure = Callable[[bool, int, Path, Callable[[str], None]], tuple[dict[str, float], str]]
+
+
+def keep(figures: dict[str, float], command: str, commit: str, file: Path | None) -> None:
+    """Prints a line a figure; writes them to the file, if there is one, with where they come from."""
+    for name, value in figures.items():
+        print(f"{name} {value:.4g}")
+    if file is None:
+        return
+    table = {"date": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC", "command": command, "commit": commit,
+             "host": f"{processor()}, {cores()} cores", "figures": figures}
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps(table, indent=1) + "\n")
 
 
 def run_benchmark(name: str, words: str, measure: Measure) -> int:
@@ -178,19 +191,13 @@ def run_benchmark(name: str, words: str, measure: Measure) -> int:
         parser.error(f"--repeats {repeats}: must be at least 1")
     with tempfile.TemporaryDirectory() as scratch:
         try:
-            figures, origin = measure(options.quick, repeats, options.out or Path(scratch),
+            figures, commit = measure(options.quick, repeats, options.out or Path(scratch),
                                       lambda text: print(text, file=sys.stderr, flush=True))
         except (Broken, SolverError, Failed) as error:
             print(f"{name}: {error}", file=sys.stderr)
             return 1
-    for figure, value in figures.items():
-        print(f"{figure} {value:.4g}")
-    if options.json:
-        command = f"python3 -m bench.{name}" + (" --quick" if options.quick else "") + f" --repeats {repeats}"
-        table = {"date": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC", "command": command, "commit": origin["commit"],
-                 "host": origin["host"], "figures": figures}
-        options.json.parent.mkdir(parents=True, exist_ok=True)
-        options.json.write_text(json.dumps(table, indent=1) + "\n")
+    command = f"python3 -m bench.{name}" + (" --quick" if options.quick else "")
+    keep(figures, f"{command} --repeats {repeats}", commit, options.json)
     return 0
 
 

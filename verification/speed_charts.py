@@ -117,5 +117,32 @@ def bounds(figures: dict[str, float], file: Path) -> None:
         axes[1].legend(frameon=False, fontsize=8, loc="lower right")
 
 
+def precisions(figures: dict[str, float], file: Path) -> None:
+    """Speed in both precisions; over the spacing, how far double precision is from the answer of a case and single from double;
+    figures of bench/precision.py."""
+    with figure_of(file, 10, 3.4, columns=2) as (speed, accuracy):
+        rows = [(name, precision) for name in FLUIDS for precision in ("double", "single")]
+        for row, (name, precision) in enumerate(rows):
+            rate = figures[f"figure fluid_{name}.particle_steps_per_s_{precision}"] / 1e6
+            speed.barh(row, rate, 0.7, color=BLUE if precision == "double" else GREEN)
+            speed.text(rate, row, f" {rate:.3g}", va="center", fontsize=8)
+        speed.set_yticks(range(len(rows)), [f"{FLUIDS[name]}, {precision}" for name, precision in rows], fontsize=8)
+        speed.invert_yaxis()
+        speed.margins(x=0.1)
+        speed.set_xlabel("million particle-steps per second, one process")
+        cases = dict.fromkeys(key.split()[1].split(".")[0] for key in figures if ".level_" in key)
+        for case, marker in zip(cases, "os^D", strict=False):
+            levels = sorted({key.split(".")[1] for key in figures if key.split()[1].startswith(case + ".level_")})
+            spacings = [figures[f"figure {case}.{level}.spacing"] for level in levels]
+            for words, color, label in (("double_off_the_answer", BLUE, "double, off the answer"), ("single_off_double", GREEN, "single, off double")):
+                values = [figures[f"ratio {case}.{level}.{words}"] for level in levels]
+                accuracy.plot(spacings, values, marker + "-", color=color, markersize=4, linewidth=1.1, label=f"{case}: {label}")
+        accuracy.set_xscale("log")
+        accuracy.set_yscale("log")
+        accuracy.set_xlabel("spacing (in lengths of the case)")
+        accuracy.set_title("difference over the answer", fontsize=9)
+        accuracy.legend(frameon=False, fontsize=6)
+
+
 # By the name of the table in reports/published.
-CHARTS = {"speed": speeds, "scaling": scalings, "cost_model": costs, "roofline": bounds, "solids": costs_of_solids}
+CHARTS = {"speed": speeds, "scaling": scalings, "cost_model": costs, "roofline": bounds, "precision": precisions, "solids": costs_of_solids}
