@@ -3,7 +3,11 @@
 The full tier takes longer than a night; case by case it is run when there is time.
 """
 
+import fcntl
 import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -49,9 +53,23 @@ def entry_of(result: CaseResult) -> dict:
     }
 
 
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """One process at a time."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
+
+
 def store(result: CaseResult, file: Path = FULL) -> None:
-    """Adds the result, in place of an earlier one of the same case."""
-    known = json.loads(file.read_text()) if file.exists() else {}
-    known[result.case.name] = entry_of(result)
+    """Adds the result, in place of an earlier one of the same case. Several processes may store at a time."""
     file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(json.dumps(dict(sorted(known.items())), indent=1) + "\n")
+    with _alone_in(file.parent):
+        known = json.loads(file.read_text()) if file.exists() else {}
+        known[result.case.name] = entry_of(result)
+        whole = file.with_suffix(".part")
+        whole.write_text(json.dumps(dict(sorted(known.items())), indent=1) + "\n")
+        whole.replace(file)

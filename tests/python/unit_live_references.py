@@ -4,6 +4,7 @@ import json
 import math
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -263,6 +264,21 @@ def test_results_of_single_cases_are_kept_side_by_side(tmp_path: Path) -> None:
     (row,) = kept["family.dense"]["rows"]
     assert row["measured"] == "24.7" and row["error"] == "-0.40 %" and row["verdict"] == CORRECT
     assert kept["family.thin"]["rows"][0]["reason"] == "beyond the goal 2 %"
+
+
+def test_nothing_is_lost_where_several_store_at_once(tmp_path: Path) -> None:
+    known = resolved(read_cases(written(tmp_path))[0], FOUND)
+    outcome = Outcome(known.observables[0], Measured(30.0, 0.0), {"resolution": 0.1})
+
+    def keep(number: int) -> None:
+        case = replace(known, name=str(number))
+        run = SimpleNamespace(record={"commit": "abc"})
+        result = SimpleNamespace(case=case, tier="full", runs={(): run}, live=LiveRun(FOUND, tmp_path), outcomes=(outcome,))
+        store(result, tmp_path / "full.json")
+
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(keep, range(64)))
+    assert len(json.loads((tmp_path / "full.json").read_text())) == 64
 
 
 def test_a_scene_that_was_changed_is_not_kept() -> None:
