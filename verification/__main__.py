@@ -11,9 +11,9 @@ from verification.compare import compare, explain
 from verification.errors import CaseError, SolverError
 from verification.manifest import all_cases, find_cases
 from verification.result import run_case, run_with
+from verification.runner import cores
 from verification.solver import ROOT, Options, run
 from verification.stored import store
-
 
 SKIPPED_CODE = 77  # what ctest takes for skipped
 
@@ -35,6 +35,8 @@ def run_named(arguments: argparse.Namespace) -> int:
     """The case, or all its points of the tier. Returns 0, 1 where something does not hold, else 77 where something was skipped."""
     if arguments.set and arguments.store:
         raise CaseError("--store keeps a case as it is declared; leave out --set or --store")
+    if arguments.jobs < 1:
+        raise CaseError(f"--jobs {arguments.jobs}: must be at least 1")
     found = []
     for name in arguments.case:
         points = find_cases(name)
@@ -48,7 +50,8 @@ def run_named(arguments: argparse.Namespace) -> int:
         if arguments.set:
             results.append(run_with(case, folder, tuple(arguments.set), arguments.ranks))
         else:
-            results.append(run_case(case, arguments.tier, folder, arguments.ranks, say=lambda text: print(text, file=sys.stderr)))
+            results.append(run_case(case, arguments.tier, folder, arguments.ranks, arguments.jobs,
+                                    say=lambda text: print(text, file=sys.stderr)))
         if arguments.store:
             store(results[-1])
         print("\n".join(f"{case.name}: {line}" if len(found) > 1 else line for line in results[-1].lines), flush=True)
@@ -94,7 +97,7 @@ def _parser() -> argparse.ArgumentParser:
     one.add_argument("--tier", choices=TIERS, default="quick", help="full adds the levels that take long")
     one.add_argument("--out", type=Path, help="folder of the runs (default runs), which come to lie in OUT/CASE")
     one.add_argument("--ranks", type=int, default=1, help="ranks of the parallel solver; 0 is the serial reference")
-
+    one.add_argument("--jobs", type=int, default=cores(), metavar="K", help="runs of a case at a time (default: a core each)")
     one.add_argument("--store", action="store_true", help="keep the results in reports/published/full.json, for the report")
 
     report = commands.add_parser("report", help="write the report")

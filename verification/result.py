@@ -10,7 +10,7 @@ from verification.conservation import Conservation, conservation, defect_line, t
 from verification.equivalence import Matrix, run_matrix
 from verification.judge import SKIPPED, Outcome, beside, judge
 from verification.references import LiveRun, resolved, run_live
-from verification.runner import Job, cores, jobs_of, run_jobs
+from verification.runner import Job, jobs_of, run_jobs
 from verification.solver import Options, Run, run
 
 Runs = dict[tuple[str, ...], Run]
@@ -97,7 +97,7 @@ def judged(case: Case, tier: str, runs: Runs, bits: tuple[Matrix, Conservation] 
     return CaseResult(known, tier, runs, outcomes, others, exactness(runs), *(bits or (None, None)), live)
 
 
-def run_case(case: Case, tier: str, out: Path, ranks: int, say: Callable[[str], None]) -> CaseResult:
+def run_case(case: Case, tier: str, out: Path, ranks: int, jobs_at_a_time: int, say: Callable[[str], None]) -> CaseResult:
     """All that the manifest asks for, below out/NAME. `say` is told of every run that ends."""
     started = time.monotonic()
 
@@ -106,7 +106,7 @@ def run_case(case: Case, tier: str, out: Path, ranks: int, say: Callable[[str], 
         say(f"{case.name}: {job.label}: done; {left:.0f} s to go")
 
     jobs = jobs_of(case, tier)
-    runs = run_jobs(jobs, out, Options(ranks=ranks), cores(), told)
+    runs = run_jobs(jobs, out, Options(ranks=ranks), jobs_at_a_time, told)
     bits = run_bits(case, out, say) if case.equivalence is not None else None
     own = {overrides: finished for (_, overrides), finished in runs.items()}
     return judged(case, tier, own, bits, run_live(case, tier, own, out) if case.live else None)

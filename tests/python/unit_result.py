@@ -2,11 +2,14 @@
 
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
+from verification import runner
 from verification.manifest import find_case
 from verification.result import CaseResult, Exactness, run_with
 from verification.solver import ROOT
@@ -45,3 +48,28 @@ def test_the_judge_ends_with_its_verdict(tmp_path: Path) -> None:
         judged = subprocess.run(line, cwd=ROOT, capture_output=True, text=True)
         assert judged.returncode == code, judged.stderr
         assert verdict in judged.stdout
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_as_many_runs_at_a_time_as_were_asked_for(jobs: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    running, most, lock = 0, 0, threading.Lock()
+
+    def watched(*_: object) -> None:
+        nonlocal running, most
+        with lock:
+            running += 1
+            most = max(most, running)
+        time.sleep(0.05)
+        with lock:
+            running -= 1
+
+    monkeypatch.setattr(runner, "run", watched)
+    chosen = runner.jobs_of(find_case("shear_wave"), "full")
+    assert len(runner.run_jobs(chosen, tmp_path, runner.Options(), jobs)) == len(chosen) > 2
+    assert most == jobs
+
+
+def test_no_run_at_a_time_is_refused() -> None:
+    line = [sys.executable, "-m", "verification", "run", "rest", "--jobs", "0"]
+    refused = subprocess.run(line, cwd=ROOT, capture_output=True, text=True)
+    assert refused.returncode != 0 and "--jobs 0: must be at least 1" in refused.stderr
