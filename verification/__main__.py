@@ -55,10 +55,6 @@ def run_named(arguments: argparse.Namespace) -> int:
         if arguments.store:
             store(results[-1])
         print("\n".join(f"{case.name}: {line}" if len(found) > 1 else line for line in results[-1].lines), flush=True)
-    if arguments.store:
-        from verification.figures import store_charts  # drawing libraries load slowly
-
-        store_charts(results)
     if not all(result.holds for result in results):
         return 1
     return SKIPPED_CODE if any(result.skipped for result in results) else 0

@@ -11,7 +11,7 @@ from verification.pictures import velocity_field
 from verification.result import CaseResult
 from verification.side_by_side import compare_fields
 from verification.solver import Run
-from verification.stored import FULL_CHARTS
+from verification.stored import stored_families
 
 
 @dataclass(frozen=True)
@@ -70,15 +70,13 @@ def family_figures(results: list[CaseResult], out: Path) -> tuple[Path, ...]:
     return tuple(_drawn(curves(results) if curves else [], f"{results[0].case.family}_family", out))
 
 
-def store_charts(results: list[CaseResult], out: Path = FULL_CHARTS) -> None:
-    """Of the families whose points are all among `results`, kept for the report."""
-    families: dict[str, list[CaseResult]] = {}
-    for result in results:
-        families.setdefault(result.case.family, []).append(result)
-    for members in families.values():
-        if len(members) == len(find_cases(members[0].case.family)):
-            out.mkdir(parents=True, exist_ok=True)
-            family_figures(members, out)
+def stored_figures(entries: dict[str, dict], out: Path) -> list[Path]:
+    """What measure.py draws of the stored points of a family: `def stored_curves(results: list[CaseResult]) -> list[Chart]`."""
+    drawn = []
+    for results in stored_families(entries):
+        curves = own(results[0].case, "stored_curves") if len(results) > 1 else None
+        drawn += _drawn(curves(results) if curves else [], f"{results[0].case.family}_stored", out)
+    return drawn
 
 
 def suite_figures(rows: list[tuple[str, Outcome]], history: list[dict], out: Path) -> dict[str, Path]:

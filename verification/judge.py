@@ -172,7 +172,8 @@ def _loaded(file: Path) -> ModuleType:
 
 
 def own(case: Case, name: str) -> Callable | None:
-    """A function that measure.py of the case offers beside its measures: curves, live_curves, family_curves, live_options."""
+    """A function that measure.py of the case offers beside its measures: curves, live_curves, family_curves,
+    stored_curves, live_options."""
     return getattr(case_module(case), name, None)
 
 

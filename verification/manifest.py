@@ -56,6 +56,7 @@ measure.py beside it holds its observables, and may hold
     curves(run) -> list[Chart]                # to draw of the finest run, see verification/curve.py
     live_curves(run, folder) -> list[Chart]   # to draw of it and of the reference code, whose files are in the folder
     family_curves(results) -> list[Chart]     # to draw of two points or more together, see verification/result.py
+    stored_curves(results) -> list[Chart]     # to draw of the stored points of the full tier, which are without their runs
     live_options(runs) -> list[str]           # more options of the reference code, from the runs by their overrides
 """
 

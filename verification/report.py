@@ -12,7 +12,7 @@ from pathlib import Path
 
 from verification.case import Case
 from verification.chapters import chapters_of, families_of, rows_of
-from verification.figures import CaseFigures, case_figures, family_figures, shown_figures, suite_figures
+from verification.figures import CaseFigures, case_figures, family_figures, shown_figures, stored_figures, suite_figures
 from verification.history import changes, errors_of, read_history
 from verification.judge import CORRECT, SKIPPED
 from verification.manifest import all_cases, find_case
@@ -24,7 +24,7 @@ from verification.result import CaseResult, judged, run_bits
 from verification.runner import Job, cores, jobs_of, run_jobs
 from verification.solver import ROOT, Options, Run
 from verification.speed_charts import CHARTS
-from verification.stored import FULL, FULL_CHARTS, PUBLISHED
+from verification.stored import FULL, PUBLISHED
 
 SHOWN = "gas_solid_small"
 STEPS = {"quick": 8_000, "full": 60_000}  # of the long run
@@ -131,6 +131,7 @@ def write_report(tier: str, out: Path, publish: bool) -> int:
         suite = suite_figures([(row.name, row.outcome) for row in rows], [*history, entry], out)
         shown_pictures = shown_figures(shown, out)
         stored = _stored()
+        full_charts = stored_figures(stored["full"]["data"], out) if "full" in stored else []
         speed_charts = {name: out / f"{name}.svg" for name in CHARTS if name in stored}
         for name, file in speed_charts.items():
             CHARTS[name](stored[name]["data"]["figures"], file)
@@ -141,7 +142,7 @@ def write_report(tier: str, out: Path, publish: bool) -> int:
             "rows": rows, "suite": suite, "shown_pictures": shown_pictures,
             "shown": SHOWN, "steps": STEPS[tier], "record": shown.record, "ledger": _ledger(shown), "stored": stored,
             "speed_charts": speed_charts,
-            "full_charts": sorted(FULL_CHARTS.glob("*.svg")),
+            "full_charts": full_charts,
             "changes": changes(history, entry["errors"]), "history": history, "provenance": origin,
             "checksums": reference_checksums(), "took": str(timedelta(seconds=round(time.monotonic() - started))),
         }

@@ -5,25 +5,31 @@ The full tier takes longer than a night; case by case it is run when there is ti
 
 import fcntl
 import json
+import math
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 
+from verification.case import Observable
 from verification.judge import COVERAGE, SKIPPED, Outcome
-from verification.result import CaseResult
+from verification.manifest import all_cases
+from verification.observables import Measured
+from verification.result import CaseResult, Exactness
 from verification.solver import ROOT
 
 PUBLISHED = ROOT / "reports" / "published"
 FULL = PUBLISHED / "full.json"
-FULL_CHARTS = PUBLISHED / "full"  # of families of which all points were run together
 
 
-def _row(outcome: Outcome) -> dict[str, str]:
-    """As the report shows it, so that the file can be read by itself."""
+def _row(outcome: Outcome) -> dict:
+    """As the report shows it, so that the file can be read by itself; and the numbers behind it, u_num absolute."""
     observable, known = outcome.observable, outcome.verdict != SKIPPED
+    numbers = {"measured": outcome.measured.value, "reference": observable.reference, "u_ref": observable.uncertainty,
+               "u_num": outcome.u_num * outcome.scale, "goal": observable.goal}
     return {
+        "numbers": {name: value if math.isfinite(value) else None for name, value in numbers.items()},
         "symbol": observable.against,
         "measured": f"{outcome.measured.value:.6g}",
         "reference": f"{observable.reference:.6g} +- {observable.uncertainty:.2g}" if known else "",
@@ -51,6 +57,23 @@ def entry_of(result: CaseResult) -> dict:
         "command": f"python3 -m verification run {result.case.name} --tier {result.tier}",
         "rows": [_row(outcome) for outcome in result.outcomes],
     }
+
+
+def _outcome_of(row: dict) -> Outcome:
+    numbers = {name: math.nan if value is None else value for name, value in row["numbers"].items()}
+    observable = Observable(row["symbol"], row["symbol"], numbers["reference"], numbers["u_ref"], row["source"], numbers["goal"])
+    return Outcome(observable, Measured(numbers["measured"], 0.0), {"stored": numbers["u_num"]})
+
+
+def stored_families(entries: dict[str, dict]) -> list[list[CaseResult]]:
+    """The cases of the file that there still are, by families, each with its finest level and without its runs."""
+    families: dict[str, list[CaseResult]] = {}
+    for case in all_cases():
+        if case.name in entries:
+            outcomes = tuple(_outcome_of(row) for row in entries[case.name]["rows"])
+            result = CaseResult(case, entries[case.name]["tier"], {}, outcomes, (), Exactness(0, 0, ()))
+            families.setdefault(case.family, []).append(result)
+    return list(families.values())
 
 
 @contextmanager

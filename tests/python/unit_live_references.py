@@ -9,19 +9,21 @@ from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from reference.live import Quantity, Result, read_result, write_result
 from reference.scene import in_si, with_overrides
 from verification.case import Observable
 from verification.errors import CaseError
-from verification.judge import CORRECT, OPEN, SKIPPED, WRONG, Outcome, _at_zero, judge
+from verification.figures import stored_figures
+from verification.judge import CORRECT, OPEN, SKIPPED, WRONG, Outcome, _at_zero, judge, own
 from verification.ladder import extrapolated
 from verification.manifest import find_cases, read_cases
 from verification.observables import Measured
 from verification.references import LiveRun, live_command, resolved
 from verification.runner import Job, jobs_of
-from verification.stored import store
+from verification.stored import store, stored_families
 
 MANIFEST = """
 name = "x"
@@ -263,7 +265,22 @@ def test_results_of_single_cases_are_kept_side_by_side(tmp_path: Path) -> None:
     assert list(kept) == ["family.dense", "family.thin"] and kept["family.thin"]["code"] == "OpenFOAM 1912"
     (row,) = kept["family.dense"]["rows"]
     assert row["measured"] == "24.7" and row["error"] == "-0.40 %" and row["verdict"] == CORRECT
+    assert row["numbers"]["measured"] == 24.7 and row["numbers"]["u_num"] == 0.1
     assert kept["family.thin"]["rows"][0]["reason"] == "beyond the goal 2 %"
+
+
+def test_stored_points_of_a_family_are_drawn_together(tmp_path: Path) -> None:
+    # Drags of Zick and Homsy, J. Fluid Mech. 115, 1982, 13-26, two per cent too large; Stokes' law is 1 in this unit.
+    def entry(drag: float) -> dict:
+        numbers = {"measured": 1.02 * drag, "reference": drag, "u_ref": 0.0, "u_num": 0.01 * drag, "goal": 0.03}
+        return {"tier": "full", "rows": [{"symbol": "F", "source": "Zick and Homsy", "numbers": numbers}]}
+
+    entries = {f"sphere_stokes.phi_{phi}": entry(drag) for phi, drag in ((0.027, 2.008), (0.064, 2.810), (0.125, 4.292))}
+    (results,) = stored_families(entries | {"a_case_that_is_gone": entry(1.0)})
+    errors, alone = own(results[0].case, "stored_curves")(results)
+    assert errors.curves[0].y == pytest.approx(np.full(3, 2.0)) and errors.curves[0].error == pytest.approx(np.full(3, 2.0))
+    assert alone.curves[-1].y == pytest.approx(1.02, abs=0.01)
+    assert [file.name for file in stored_figures(entries, tmp_path)] == ["sphere_stokes_stored0.svg", "sphere_stokes_stored1.svg"]
 
 
 def test_nothing_is_lost_where_several_store_at_once(tmp_path: Path) -> None:
