@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <cstring>
@@ -103,6 +104,18 @@ MAPPM_INLINE Simd<T, Abi> smaller(const Simd<T, Abi>& a, const Simd<T, Abi>& b) 
   return std::experimental::min(a, b);
 }
 
+MAPPM_INLINE double magnitude(double x) { return std::fabs(x); }
+MAPPM_INLINE Lanes magnitude(const Lanes& x) { return std::experimental::abs(x); }
+
+/// An integer as a real number: exact below 2^53, else rounded to nearest.
+MAPPM_INLINE double real_of(std::int64_t x) { return static_cast<double>(x); }
+MAPPM_INLINE Lanes real_of(const IntLanes& x) { return std::experimental::static_simd_cast<Lanes>(x); }
+
+/// Same as the scalar `wrap_position`, in every lane.
+MAPPM_INLINE Lanes wrap_position(const Lanes& x) {
+  return x - std::experimental::floor(x * (1.0 / box_quanta)) * box_quanta;
+}
+
 MAPPM_INLINE Lanes load_lanes(const double* from) { return Lanes(from, std::experimental::element_aligned); }
 MAPPM_INLINE FloatLanes load_lanes(const float* from) { return FloatLanes(from, std::experimental::element_aligned); }
 MAPPM_INLINE IntLanes load_lanes(const std::int64_t* from) {
@@ -122,6 +135,9 @@ MAPPM_INLINE auto lanes_of(const Simd<U, Abi>& lanes) {
   return std::experimental::static_simd_cast<std::experimental::rebind_simd_t<T, Simd<U, Abi>>>(lanes);
 }
 
+MAPPM_INLINE std::int64_t widened(std::int32_t x) { return x; }
+MAPPM_INLINE IntLanes widened(const Int32Lanes& x) { return lanes_of<std::int64_t>(x); }
+
 /// 0, 1, 2, ...
 template <class Vector = Lanes>
 MAPPM_INLINE Vector lane_numbers() {
@@ -136,6 +152,11 @@ MAPPM_INLINE void whole_numbers(const Lanes& lanes, std::int32_t* to) {
 template <class T, class Abi>
 MAPPM_INLINE bool any_below(const Simd<T, Abi>& lanes, Scalar<Simd<T, Abi>> limit) {
   return std::experimental::any_of(lanes < limit);
+}
+
+template <class T, class Abi>
+MAPPM_INLINE bool any_of_lanes(const std::experimental::simd_mask<T, Abi>& mask) {
+  return std::experimental::any_of(mask);
 }
 
 template <class T, class Abi>

@@ -237,29 +237,58 @@ void ParallelEngine<D>::move_fluid() {
       for (row[1] = first_inner(1); row[1] < end_inner(1); ++row[1]) add_row();
   }
   std::vector<Vec<D, Int128>> given(model_.terms.force_field ? rows.size() : 0);  // by the field of force, to each row
+  const auto move_one = [&](std::uint32_t i, NeighbourSums<D> sums) {
+    Vec<D, double> x, v;
+    for (int axis = 0; axis < D; ++axis) {
+      x[axis] = fluid.x(axis)[i];
+      v[axis] = fluid.v(axis)[i];
+    }
+    const RangeFault fault = advance(x, v, fluid.density()[i], sums, constants);
+    if (fault != RangeFault::none) [[unlikely]]
+      report(fault, i, v, sums);
+    for (int axis = 0; axis < D; ++axis) {
+      fluid.x(axis)[i] = wrap_position(x[axis]);
+      fluid.v(axis)[i] = v[axis];
+    }
+  };
+  /// False, and nothing done, where one of them is out of range.
+  const auto move_lanes = [&](std::uint32_t i, const NeighbourSums<D, IntLanes>& sums) {
+    Vec<D, Lanes> x, v;
+    for (int axis = 0; axis < D; ++axis) {
+      x[axis] = load_lanes(&fluid.x(axis)[i]);
+      v[axis] = load_lanes(&fluid.v(axis)[i]);
+    }
+    const auto motion = motion_of(x, v, sums, constants);
+    if (any_of_lanes(motion.beyond.any())) [[unlikely]]
+      return false;
+    for (int axis = 0; axis < D; ++axis) {
+      store_lanes(wrap_position(motion.x[axis]), &fluid.x(axis)[i]);
+      store_lanes(motion.v[axis], &fluid.v(axis)[i]);
+    }
+    store_lanes(motion.density, &fluid.density()[i]);
+    return true;
+  };
   const auto move = [&]<bool field>(const auto& pass, std::bool_constant<field>) {
 #pragma omp parallel for num_threads(options_.threads) schedule(static) if (options_.threads > 1)
-    for (std::size_t n = 0; n < rows.size(); ++n)
-      for (std::uint32_t i = rows[n].first; i < rows[n].last; ++i) {
-        Vec<D, double> x, v;
-        for (int axis = 0; axis < D; ++axis) {
-          x[axis] = fluid.x(axis)[i];
-          v[axis] = fluid.v(axis)[i];
-        }
-        NeighbourSums<D> sums = pass.sums(i, rows[n].plane);
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+      const auto [first, last, plane] = rows[n];
+      for (std::uint32_t i = first; i < last;) {
+        if constexpr (!field)
+          if (i + lane_count <= last && pass.begins_lanes(i, plane) && move_lanes(i, pass.sums_of_lanes(i, plane))) {
+            i += lane_count;
+            continue;
+          }
+        NeighbourSums<D> sums = pass.sums(i, plane);
         if constexpr (field) {
+          Vec<D, double> x;
+          for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];
           const Vec<D, std::int64_t> impulse = field_impulse(model_.fluid_field, x);
           sums.impulse += impulse;
           for (int axis = 0; axis < D; ++axis) given[n][axis] += impulse[axis];
         }
-        const RangeFault fault = advance(x, v, fluid.density()[i], sums, constants);
-        if (fault != RangeFault::none) [[unlikely]]
-          report(fault, i, v, sums);
-        for (int axis = 0; axis < D; ++axis) {
-          fluid.x(axis)[i] = wrap_position(x[axis]);
-          fluid.v(axis)[i] = v[axis];
-        }
+        move_one(i++, sums);
       }
+    }
   };
   std::visit([&](const auto& pass) { with_force_field(model_, state_.step, [&](auto field) { move(pass, field); }); },
              pass_);

@@ -37,6 +37,12 @@ class FluidPass {
   NeighbourSums<D> sums(std::uint32_t i, int plane) const {
     return numbers_.sums(blocks_.sums(i + blocks_.gap(plane)));
   }
+  /// Whether PP i of this plane is the first of as many as there are lanes whose sums lie side by side.
+  bool begins_lanes(std::uint32_t i, int plane) const { return (i + blocks_.gap(plane)) % lane_count == 0; }
+  /// Sums of these.
+  MAPPM_INLINE NeighbourSums<D, IntLanes> sums_of_lanes(std::uint32_t i, int plane) const {
+    return numbers_.sums(blocks_.sums_of_lanes(i + blocks_.gap(plane)));
+  }
   NeighbourSums<D> sums(std::uint32_t i) const { return numbers_.sums(blocks_.sums(blocks_.place(i))); }
 
   /// After both and with their arguments: what each partner gave to the PP with this id that lies in the region, every

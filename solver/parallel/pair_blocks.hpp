@@ -109,6 +109,17 @@ class PairBlocks {
     sums.density = block.density[lane];
     return sums;
   }
+  /// Of all PPs of the block that begins at `place`.
+  MAPPM_INLINE auto sums_of_lanes(std::uint32_t place) const {
+    const Block& block = blocks_[place / lane_count];
+    PairResult<D, decltype(load_lanes(block.density))> sums;
+    for (int axis = 0; axis < D; ++axis) {
+      sums.impulse[axis] = load_lanes(block.impulse[axis]);
+      sums.shift[axis] = load_lanes(block.shift[axis]);
+    }
+    sums.density = load_lanes(block.density);
+    return sums;
+  }
 
  private:
   static void fill_block(const Model<D>& model, const Numbers& numbers, const FluidParticles<D>& fluid, std::size_t i,

@@ -45,7 +45,9 @@ class DoublePairs {
     return x;
   }
   MAPPM_INLINE static Lanes apart(const Lanes& a, const Lanes& b) { return a - b; }
-  NeighbourSums<D> sums(const PairResult<D, std::int64_t>& given) const {
+  /// Sums of one PP, or of lanes, in quanta of the state.
+  template <class Integer>
+  MAPPM_INLINE NeighbourSums<D, Integer> sums(const PairResult<D, Integer>& given) const {
     return {given.impulse, given.shift, given.density};
   }
 
@@ -89,13 +91,15 @@ class SinglePairs {
   }
   MAPPM_INLINE static FloatLanes apart(const Int32Lanes& a, const Int32Lanes& b) { return lanes_of<float>(a - b); }
   /// Sums keep their momentum exactly: a quantum here is a whole number of those of the state.
-  NeighbourSums<D> sums(const PairResult<D, std::int32_t>& given) const {
-    NeighbourSums<D> sums;
+  template <class Integer>
+  MAPPM_INLINE auto sums(const PairResult<D, Integer>& given) const {
+    using Wide = decltype(widened(given.density));
+    NeighbourSums<D, Wide> sums;
     for (int axis = 0; axis < D; ++axis) {
-      sums.impulse[axis] = given.impulse[axis] * static_cast<std::int64_t>(impulse_);
-      sums.shift[axis] = given.shift[axis] * static_cast<std::int64_t>(place_[axis]);
+      sums.impulse[axis] = widened(given.impulse[axis]) * Wide(static_cast<std::int64_t>(impulse_));
+      sums.shift[axis] = widened(given.shift[axis]) * Wide(static_cast<std::int64_t>(place_[axis]));
     }
-    sums.density = given.density * static_cast<std::int64_t>(density_);
+    sums.density = widened(given.density) * Wide(static_cast<std::int64_t>(density_));
     return sums;
   }
 

@@ -1,7 +1,6 @@
 // Motion of one pseudo-particle: the paper's Verlet scheme as kick and drift.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 
 #include "base/fixed_point.hpp"
@@ -12,11 +11,11 @@
 namespace mappm {
 
 /// Sums over the neighbours of one PP in one step, as integers: impulse (iota), shift (position quanta), density
-/// (density quanta, the particle itself not included).
-template <int D>
+/// (density quanta, the particle itself not included). Of several PPs where the integers are lanes.
+template <int D, class Integer = std::int64_t>
 struct NeighbourSums {
-  Vec<D, std::int64_t> impulse, shift;
-  std::int64_t density;
+  Vec<D, Integer> impulse, shift;
+  Integer density;
 };
 
 /// Constants of a step, the same for every PP.
@@ -29,27 +28,53 @@ struct ParticleStep {
   double lowest_density, highest_density;
 };
 
-/// v += impulse + kick, x += v dt + shift, density = sum: exact but for the rounding of v dt to a quantum. The position
-/// is not wrapped. On a fault nothing is changed.
+/// A step of one PP, or of as many as there are lanes, and where it leaves its range (bool, or a mask of lanes).
+template <int D, class Real, class Mask>
+struct ParticleMotion {
+  Vec<D, Real> x, v;
+  Real density;
+  struct Beyond {
+    Mask impulse{false}, velocity{false}, displacement{false}, density{false};
+    Mask any() const { return impulse || velocity || displacement || density; }
+  } beyond;
+};
+
+/// v + impulse + kick, x + v dt + shift, density = sum: exact but for the rounding of v dt to a quantum. The position
+/// is not wrapped.
+template <int D, class Real>
+MAPPM_INLINE auto motion_of(const Vec<D, Real>& x, const Vec<D, Real>& v, const NeighbourSums<D, Fixed<Real>>& sums,
+                            const ParticleStep<D>& step) {
+  constexpr double largest_impulse = 0x1p50, largest_velocity = exact_quanta * velocity_quantum;
+  ParticleMotion<D, Real, decltype(x[0] < x[0])> motion;
+  auto& beyond = motion.beyond;
+  for (int axis = 0; axis < D; ++axis) {
+    const Real impulse = real_of(sums.impulse[axis]);
+    const Real new_v = v[axis] + (impulse * velocity_quantum + step.kick[axis]);
+    const Real moved = real_of(to_fixed(new_v * step.drift[axis])) + real_of(sums.shift[axis]);
+    beyond.impulse = beyond.impulse || !(magnitude(impulse) < largest_impulse);
+    beyond.velocity = beyond.velocity || !(magnitude(new_v) < largest_velocity);
+    beyond.displacement = beyond.displacement || !(magnitude(moved) <= step.largest_drift[axis]);
+    motion.v[axis] = new_v;
+    motion.x[axis] = x[axis] + moved;
+  }
+  motion.density = real_of(sums.density) * density_quantum + step.self_density;
+  beyond.density = !(motion.density >= step.lowest_density && motion.density <= step.highest_density);
+  return motion;
+}
+
+/// Moves one PP. On a fault nothing is changed.
 template <int D>
 MAPPM_INLINE RangeFault advance(Vec<D, double>& x, Vec<D, double>& v, double& density, const NeighbourSums<D>& sums,
                                 const ParticleStep<D>& step) {
-  constexpr std::int64_t largest_impulse = std::int64_t{1} << 50;
-  Vec<D, double> new_x, new_v;
-  for (int axis = 0; axis < D; ++axis) {
-    if (sums.impulse[axis] >= largest_impulse || sums.impulse[axis] <= -largest_impulse) return RangeFault::impulse;
-    new_v[axis] = v[axis] + (static_cast<double>(sums.impulse[axis]) * velocity_quantum + step.kick[axis]);
-    if (!(std::fabs(new_v[axis]) < exact_quanta * velocity_quantum)) return RangeFault::velocity;
-    const double drift = new_v[axis] * step.drift[axis];
-    const double moved = static_cast<double>(to_fixed(drift)) + static_cast<double>(sums.shift[axis]);
-    if (!(std::fabs(moved) <= step.largest_drift[axis])) return RangeFault::displacement;
-    new_x[axis] = x[axis] + moved;
+  const auto motion = motion_of(x, v, sums, step);
+  if (motion.beyond.any()) [[unlikely]] {
+    if (motion.beyond.impulse) return RangeFault::impulse;
+    if (motion.beyond.velocity) return RangeFault::velocity;
+    return motion.beyond.displacement ? RangeFault::displacement : RangeFault::density;
   }
-  const double new_density = static_cast<double>(sums.density) * density_quantum + step.self_density;
-  if (!(new_density >= step.lowest_density && new_density <= step.highest_density)) return RangeFault::density;
-  x = new_x;
-  v = new_v;
-  density = new_density;
+  x = motion.x;
+  v = motion.v;
+  density = motion.density;
   return RangeFault::none;
 }
 

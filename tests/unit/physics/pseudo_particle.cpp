@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace mappm {
 namespace {
 
@@ -59,6 +61,45 @@ TEST(PseudoParticle, a_fault_is_named_and_changes_nothing) {
   EXPECT_EQ(fault_of(sums), RangeFault::density);
   sums.density = std::int64_t{5} << 44;
   EXPECT_EQ(fault_of(sums), RangeFault::density);
+}
+
+TEST(PseudoParticle, lanes_move_as_one_by_one) {
+  const ParticleStep<2> step = make_step();
+  std::mt19937_64 random(7);
+  std::uniform_int_distribution<std::int64_t> impulse(-(std::int64_t{1} << 46), std::int64_t{1} << 46), shift(-9, 9),
+      density(std::int64_t{6} << 44, std::int64_t{10} << 44);
+  for (int trial = 0; trial < 100; ++trial) {
+    Vec<2, Lanes> x, v;
+    NeighbourSums<2, IntLanes> sums;
+    for (int lane = 0; lane < lane_count; ++lane) {
+      for (int axis = 0; axis < 2; ++axis) {
+        x[axis][lane] = static_cast<double>(impulse(random));
+        v[axis][lane] = static_cast<double>(impulse(random)) * velocity_quantum;
+        sums.impulse[axis][lane] = impulse(random);
+        sums.shift[axis][lane] = shift(random);
+      }
+      sums.density[lane] = density(random);
+    }
+    const int odd = trial % lane_count;  // one of them beyond its range, now and then
+    if (trial % 3 == 1) sums.density[odd] = std::int64_t{11} << 44;
+    if (trial % 7 == 1) sums.shift[1][odd] = std::int64_t{1} << 22;
+    const auto motion = motion_of(x, v, sums, step);
+    for (int lane = 0; lane < lane_count; ++lane) {
+      Particle one{{{x[0][lane], x[1][lane]}}, {{v[0][lane], v[1][lane]}}, 0.0};
+      const NeighbourSums<2> given{{{sums.impulse[0][lane], sums.impulse[1][lane]}},
+                                   {{sums.shift[0][lane], sums.shift[1][lane]}},
+                                   sums.density[lane]};
+      const RangeFault fault = advance(one.x, one.v, one.density, given, step);
+      EXPECT_EQ(motion.beyond.any()[lane], fault != RangeFault::none);
+      EXPECT_EQ(fault != RangeFault::none, lane == odd && (trial % 3 == 1 || trial % 7 == 1));
+      if (fault != RangeFault::none) continue;
+      for (int axis = 0; axis < 2; ++axis) {
+        EXPECT_EQ(motion.x[axis][lane], one.x[axis]);
+        EXPECT_EQ(motion.v[axis][lane], one.v[axis]);
+      }
+      EXPECT_EQ(motion.density[lane], one.density);
+    }
+  }
 }
 
 }  // namespace
