@@ -142,7 +142,7 @@ def write_report(tier: str, out: Path, publish: bool) -> int:
             "rows": rows, "suite": suite, "shown_pictures": shown_pictures,
             "shown": SHOWN, "steps": STEPS[tier], "record": shown.record, "ledger": _ledger(shown), "stored": stored,
             "speed_charts": speed_charts,
-            "full_charts": full_charts,
+            "full_charts": full_charts, "purposes": {case.name: case.purpose for case in all_cases()},
             "changes": changes(history, entry["errors"]), "history": history, "provenance": origin,
             "checksums": reference_checksums(), "took": str(timedelta(seconds=round(time.monotonic() - started))),
         }
