@@ -6,7 +6,6 @@ from pathlib import Path
 from verification import charts
 from verification.curve import Chart
 from verification.judge import SKIPPED, Outcome, own
-from verification.manifest import find_cases
 from verification.pictures import velocity_field
 from verification.result import CaseResult
 from verification.side_by_side import compare_fields
@@ -64,19 +63,15 @@ def case_figures(result: CaseResult, out: Path) -> CaseFigures:
     return CaseFigures(field, tuple(drawn), beside)
 
 
-def family_figures(results: list[CaseResult], out: Path) -> tuple[Path, ...]:
-    """What measure.py draws of all points together: `def family_curves(results: list[CaseResult]) -> list[Chart]`."""
-    curves = own(results[0].case, "family_curves") if len(results) > 1 else None
-    return tuple(_drawn(curves(results) if curves else [], f"{results[0].case.family}_family", out))
+def family_figures(results: list[CaseResult], out: Path, kind: str = "family") -> tuple[Path, ...]:
+    """What measure.py draws of several points together: by family_curves, or of kind "stored" by stored_curves."""
+    curves = own(results[0].case, f"{kind}_curves") if len(results) > 1 else None
+    return tuple(_drawn(curves(results) if curves else [], f"{results[0].case.family}_{kind}", out))
 
 
 def stored_figures(entries: dict[str, dict], out: Path) -> list[Path]:
-    """What measure.py draws of the stored points of a family: `def stored_curves(results: list[CaseResult]) -> list[Chart]`."""
-    drawn = []
-    for results in stored_families(entries):
-        curves = own(results[0].case, "stored_curves") if len(results) > 1 else None
-        drawn += _drawn(curves(results) if curves else [], f"{results[0].case.family}_stored", out)
-    return drawn
+    """Of all families in the file of stored results."""
+    return [file for results in stored_families(entries) for file in family_figures(results, out, "stored")]
 
 
 def suite_figures(rows: list[tuple[str, Outcome]], history: list[dict], out: Path) -> dict[str, Path]:

@@ -3,7 +3,6 @@ names the command, date and checksum of the stored one.
 """
 
 import json
-import math
 import shutil
 import time
 from dataclasses import replace
@@ -24,7 +23,7 @@ from verification.result import CaseResult, judged, run_bits
 from verification.runner import Job, cores, jobs_of, run_jobs
 from verification.solver import ROOT, Options, Run
 from verification.speed_charts import CHARTS
-from verification.stored import FULL, PUBLISHED
+from verification.stored import FULL, PUBLISHED, finite
 
 SHOWN = "gas_solid_small"
 STEPS = {"quick": 8_000, "full": 60_000}  # of the long run
@@ -86,13 +85,8 @@ def _stored() -> dict[str, dict]:
     return found
 
 
-def _finite(value):
-    """NaN and infinity have no JSON."""
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
 def _results_json(tier: str, origin: dict[str, str], results: list[CaseResult]) -> dict:
-    errors = {key: {name: _finite(value) for name, value in row.items()} for key, row in errors_of(results).items()}
+    errors = {key: {name: finite(value) for name, value in row.items()} for key, row in errors_of(results).items()}
     return {"date": origin["date"], "commit": origin["commit"], "tier": tier, "errors": errors}
 
 

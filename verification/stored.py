@@ -23,13 +23,18 @@ PUBLISHED = ROOT / "reports" / "published"
 FULL = PUBLISHED / "full.json"
 
 
+def finite(value):
+    """NaN and infinity have no JSON."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
 def _row(outcome: Outcome) -> dict:
     """As the report shows it, so that the file can be read by itself; and the numbers behind it, u_num absolute."""
     observable, known = outcome.observable, outcome.verdict != SKIPPED
     numbers = {"measured": outcome.measured.value, "reference": observable.reference, "u_ref": observable.uncertainty,
                "u_num": outcome.u_num * outcome.scale, "goal": observable.goal}
     return {
-        "numbers": {name: value if math.isfinite(value) else None for name, value in numbers.items()},
+        "numbers": {name: finite(value) for name, value in numbers.items()},
         "symbol": observable.against,
         "measured": f"{outcome.measured.value:.6g}",
         "reference": f"{observable.reference:.6g} +- {observable.uncertainty:.2g}" if known else "",
