@@ -18,6 +18,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (after the choice of a backend wi
 
 STYLE = {"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.3,
          "svg.fonttype": "none", "svg.hashsalt": "mappm"}
+REFERENCE_LINES = ("--", ":", "-.", (0, (1, 3)))
 NAMED = 12  # observables that a chart of all of them names
 MOST_VECTOR_POINTS = 300  # of a curve; those with more are drawn as pixels
 BLUE, GREEN, RED, GREY, DARK = "#1f5a96", "#17663a", "#b00020", "#888888", "#333333"
@@ -113,18 +114,22 @@ def uncertainty_split(result: CaseResult, file: Path) -> None:
     """Where u_num comes from: one bar a source, of every observable, relative to its goal."""
     shown = [one for one in result.outcomes if one.sources and one.observable.goal > 0 and one.verdict != SKIPPED]
     sources = list(dict.fromkeys(source for outcome in shown for source in outcome.sources))
+    symbols = [outcome.observable.symbol for outcome in shown]
     with figure_of(file, 4.6, 0.9 + 0.3 * len(sources) * max(1, 0.6 * len(shown))) as axes:
         height = 0.8 / len(shown)
         for k, outcome in enumerate(shown):
             values = [100 * outcome.sources.get(source, 0.0) / outcome.scale / outcome.observable.goal for source in sources]
-            axes.barh(np.arange(len(sources)) + k * height, values, height, label=outcome.observable.symbol)
+            symbol = outcome.observable.symbol
+            label = f"{symbol}, against {outcome.observable.against}" if symbols.count(symbol) > 1 else symbol
+            axes.barh(np.arange(len(sources)) + k * height, values, height, label=label)
         axes.set_yticks(np.arange(len(sources)) + 0.5 * (len(shown) - 1) * height, sources, fontsize=8)
-        axes.set_xlabel("standard uncertainty, % of the goal")
+        axes.set_xlabel("standard uncertainty, % of the goal", loc="right")  # the names of the sources leave it little room
         if len(shown) > 1:
             axes.figure.legend(frameon=False, fontsize=7, loc="outside lower center")
 
 
 def draw(chart: Chart, file: Path) -> None:
+    references = iter(REFERENCE_LINES * len(chart.curves))
     with figure_of(file, 5.6, 3.8) as axes:
         for curve in chart.curves:
             style = {"color": DARK if curve.reference else None, "label": curve.label}
@@ -132,11 +137,15 @@ def draw(chart: Chart, file: Path) -> None:
                 style |= {"fmt": curve.marker, "markersize": 4, "mfc": "none", "capsize": 2, "linewidth": 1}
                 axes.errorbar(curve.x, curve.y, yerr=curve.error, **style)
             else:
-                axes.plot(curve.x, curve.y, linestyle="--" if curve.reference else "-", linewidth=1.3, **style)
+                axes.plot(curve.x, curve.y, linestyle=next(references) if curve.reference else "-", linewidth=1.3, **style)
         for line in axes.get_lines():  # thousands of points would make a page of many megabytes
             line.set_rasterized(len(line.get_xdata()) > MOST_VECTOR_POINTS)
         if chart.log:
             axes.set_yscale("log")
+        else:
+            low, high = axes.get_ylim()
+            if high - low < 1e-6 * max(abs(low), abs(high)):  # the same but for rounding
+                axes.set_ylim(0.5 * (low + high) - 0.1 * abs(high), 0.5 * (low + high) + 0.1 * abs(high))
         axes.set_title(chart.title, fontsize=10)
         axes.set_xlabel(chart.x_label)
         axes.set_ylabel(chart.y_label)
@@ -148,7 +157,7 @@ def trend(history: list[dict], keys: list[str], file: Path) -> None:
     """|error| over goal of every observable, report by report; the furthest of the last report are named."""
     last = history[-1]["errors"]
     named = set(sorted(last, key=lambda key: -abs(last[key]["error"] or 0) / (last[key]["goal"] or 1))[:NAMED])
-    with figure_of(file, 8, 3.4) as axes:
+    with figure_of(file, 8, 4.2) as axes:
         for key in keys:
             points = [(k, abs(entry["errors"][key]["error"]) / entry["errors"][key]["goal"])
                       for k, entry in enumerate(history) if key in entry["errors"] and entry["errors"][key]["goal"] > 0]
@@ -159,4 +168,4 @@ def trend(history: list[dict], keys: list[str], file: Path) -> None:
         axes.set_yscale("log")
         axes.set_xticks(range(len(history)), [f"{entry['date'][:10]}\n{entry['commit'][:8]}" for entry in history], fontsize=8)
         axes.set_ylabel("|error| / goal")
-        axes.legend(frameon=False, fontsize=6, ncols=3)
+        axes.figure.legend(frameon=False, fontsize=6, ncols=2, loc="outside lower center")

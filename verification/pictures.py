@@ -11,6 +11,7 @@ import pyvista as pv  # noqa: E402
 from verification.solver import Run  # noqa: E402
 
 PIXELS = 1500  # of the longer side
+SCALE_PIXELS = 90  # at least, for the scale below the field
 
 
 def _flat(run: Run, which: int) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], np.ndarray, int, int]:
@@ -47,8 +48,9 @@ def velocity_field(run: Run, file: Path, which: int = -1) -> None:
     unit = run.series.units["fluid_velocity_x"]
     title = ("speed relative to the mean of the fluid" if free else "speed") + (f" ({unit})" if unit else "") + "\n"
 
-    bar = 0.16  # of the picture's height, for the scale
-    size = (pixels, max(260, round(pixels * height / width / (1 - bar))))
+    field = pixels * height / width  # high, in pixels
+    size = (pixels, round(field + max(0.19 * field, SCALE_PIXELS)))
+    bar = 1 - field / size[1]  # of the picture's height, for the scale
     plotter = pv.Plotter(off_screen=True, window_size=list(size))
     plotter.set_background("white")
     cloud = pv.PolyData(flat(fluid["points"]))
