@@ -120,7 +120,7 @@ def uncertainty_split(result: CaseResult, file: Path) -> None:
         for k, outcome in enumerate(shown):
             values = [100 * outcome.sources.get(source, 0.0) / outcome.scale / outcome.observable.goal for source in sources]
             symbol = outcome.observable.symbol
-            label = f"{symbol}, against {outcome.observable.against}" if symbols.count(symbol) > 1 else symbol
+            label = outcome.observable.against if symbols.count(symbol) > 1 else symbol
             axes.barh(np.arange(len(sources)) + k * height, values, height, label=label)
         axes.set_yticks(np.arange(len(sources)) + 0.5 * (len(shown) - 1) * height, sources, fontsize=8)
         axes.set_xlabel("standard uncertainty, % of the goal", loc="right")  # the names of the sources leave it little room

@@ -11,7 +11,7 @@ import pyvista as pv  # noqa: E402
 from verification.solver import Run  # noqa: E402
 
 PIXELS = 1500  # of the longer side
-SCALE_PIXELS = 90  # at least, for the scale below the field
+SCALE_PIXELS = 140  # at least, for the scale below the field
 
 
 def _flat(run: Run, which: int) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], np.ndarray, int, int]:
