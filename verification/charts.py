@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import cycle
 from pathlib import Path
 
 import matplotlib
@@ -114,14 +115,11 @@ def uncertainty_split(result: CaseResult, file: Path) -> None:
     """Where u_num comes from: one bar a source, of every observable, relative to its goal."""
     shown = [one for one in result.outcomes if one.sources and one.observable.goal > 0 and one.verdict != SKIPPED]
     sources = list(dict.fromkeys(source for outcome in shown for source in outcome.sources))
-    symbols = [outcome.observable.symbol for outcome in shown]
     with figure_of(file, 4.6, 0.9 + 0.3 * len(sources) * max(1, 0.6 * len(shown))) as axes:
         height = 0.8 / len(shown)
         for k, outcome in enumerate(shown):
             values = [100 * outcome.sources.get(source, 0.0) / outcome.scale / outcome.observable.goal for source in sources]
-            symbol = outcome.observable.symbol
-            label = outcome.observable.against if symbols.count(symbol) > 1 else symbol
-            axes.barh(np.arange(len(sources)) + k * height, values, height, label=label)
+            axes.barh(np.arange(len(sources)) + k * height, values, height, label=outcome.observable.against)
         axes.set_yticks(np.arange(len(sources)) + 0.5 * (len(shown) - 1) * height, sources, fontsize=8)
         axes.set_xlabel("standard uncertainty, % of the goal", loc="right")  # the names of the sources leave it little room
         if len(shown) > 1:
@@ -129,7 +127,7 @@ def uncertainty_split(result: CaseResult, file: Path) -> None:
 
 
 def draw(chart: Chart, file: Path) -> None:
-    references = iter(REFERENCE_LINES * len(chart.curves))
+    reference_lines = cycle(REFERENCE_LINES)
     with figure_of(file, 5.6, 3.8) as axes:
         for curve in chart.curves:
             style = {"color": DARK if curve.reference else None, "label": curve.label}
@@ -137,7 +135,7 @@ def draw(chart: Chart, file: Path) -> None:
                 style |= {"fmt": curve.marker, "markersize": 4, "mfc": "none", "capsize": 2, "linewidth": 1}
                 axes.errorbar(curve.x, curve.y, yerr=curve.error, **style)
             else:
-                axes.plot(curve.x, curve.y, linestyle=next(references) if curve.reference else "-", linewidth=1.3, **style)
+                axes.plot(curve.x, curve.y, linestyle=next(reference_lines) if curve.reference else "-", linewidth=1.3, **style)
         for line in axes.get_lines():  # thousands of points would make a page of many megabytes
             line.set_rasterized(len(line.get_xdata()) > MOST_VECTOR_POINTS)
         if chart.log:
