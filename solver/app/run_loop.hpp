@@ -99,7 +99,7 @@ class RunLoop {
   }
 
  private:
-  std::uint64_t step() const { return engine_.state().step; }
+  std::uint64_t step() const { return engine_.present_step(); }
   bool falls_on(std::uint64_t interval) const { return interval != 0 && step() % interval == 0; }
 
   template <class Say>

@@ -1,6 +1,7 @@
 #include "parallel/engine.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "parallel/redistribute.hpp"
@@ -49,8 +50,19 @@ ParallelEngine<D>::ParallelEngine(const Model<D>& model, const Domains<D>& domai
   rebalance();
 }
 
+/// Ends the stay of the PPs.
+template <int D>
+State<D>& ParallelEngine<D>::state() {
+  if (residents_ == nullptr || !residents_->staying()) return state_;
+  residents_->leave(state_.fluid);
+  for (int axis = 0; axis < D; ++axis)
+    for (double& x : state_.fluid.x(axis)) x = wrap_position(x);
+  return state_;
+}
+
 template <int D>
 void ParallelEngine<D>::rebalance() {
+  state();
   if (communicator_.size() > 1) {
     domains_ = domains_by_load(model_, domains_, communicator_, state_);
     redistribute(model_, domains_, communicator_, state_);
@@ -62,7 +74,10 @@ template <int D>
 void ParallelEngine<D>::start_domains() {
   before_ = traffic();
   halo_ = std::make_unique<Halo<D>>(model_, domains_, communicator_);
-  grid_.fit(halo_->region(), model_.pair.length, cells_per_cutoff<D>());
+  residents_ = std::make_unique<Residents<D>>(model_, halo_->region());
+  Vec<D, double> in_reach;  // length of a quantum
+  for (int axis = 0; axis < D; ++axis) in_reach[axis] = model_.pair.length[axis] / (1.0 + skin);
+  grid_.fit(halo_->region(), in_reach, cells_per_cutoff<D>());
   if (model_.shapes.empty()) return;
   Vec<D, double> low = in_cutoffs(model_, halo_->region().low), high = in_cutoffs(model_, halo_->region().high);
   double smallest = model_.largest_reach;
@@ -91,12 +106,19 @@ template <int D>
 void ParallelEngine<D>::step() {
   if (options_.rebalance > 0 && state_.step > 0 && state_.step % options_.rebalance == 0) rebalance();
   watch_.start();
-  halo_->exchange(state_, copies_, watch_);
+  if (traced_particle_.has_value() || faces_due()) state();  // what explains the pairs wants them in their cells
+  const bool stay = halo_->exchange(state_, *residents_, copies_, watch_);
   place_solids();
   watch_.end(Phase::solids);
   if (model_.terms.fluid) {
-    grid_.sort(state_.fluid);
-    watch_.end(Phase::sort);
+    if (!stay) {
+      grid_.sort(state_.fluid);
+      find_rows();
+      residents_->settle(state_.fluid);
+      watch_.end(Phase::sort);
+      std::visit([&](auto& pass) { pass.list(state_.fluid, grid_, residents_->may_own(), 1.0 + skin); }, pass_);
+      watch_.end(Phase::lists);
+    }
     std::visit([&](auto& pass) { pass.sum(state_.fluid, grid_); }, pass_);
     watch_.end(Phase::pairs);
     std::visit([&](auto& pass) { pass.add_frozen(grid_, solids_.frozen, frozen_sums_); }, pass_);
@@ -137,7 +159,7 @@ void ParallelEngine<D>::place_solids() {
 template <int D>
 void ParallelEngine<D>::explain_pairs() {
   faces_.clear();
-  if (options_.faces > 0 && (state_.step + 1) % options_.faces == 0) {
+  if (faces_due()) {
     const FaceLedger<D> ledger(model_, domains_, halo_->region(), grid_);
     faces_ = ledger.faces(state_.fluid, solids_.frozen);
     faces_.push_back({all_partners, ledger.received(state_.fluid, pass_, solids_.frozen, frozen_sums_)});
@@ -213,20 +235,13 @@ template <int D>
   if (range_error_.empty()) range_error_ = range_message(fault, state_.step, state_.fluid.id[i], v, sums);
 }
 
-/// Moves the owned PPs, which fill the inner cells, and drops the ghosts.
 template <int D>
-void ParallelEngine<D>::move_fluid() {
-  FluidParticles<D>& fluid = state_.fluid;
-  const ParticleStep<D> constants = particle_step(model_, state_.step);
-  struct Row {
-    std::uint32_t first, last;
-    int plane;
-  };
-  std::vector<Row> rows;
+void ParallelEngine<D>::find_rows() {
+  rows_.clear();
   Vec<D, int> row;
   const auto add_row = [&] {
     const std::size_t cells = grid_.row(row) + static_cast<std::size_t>(grid_.margin(0));
-    rows.push_back({grid_.start(cells), grid_.start(cells + static_cast<std::size_t>(grid_.inner(0))), row[D - 1]});
+    rows_.push_back({grid_.start(cells), grid_.start(cells + static_cast<std::size_t>(grid_.inner(0))), row[D - 1]});
   };
   const auto first_inner = [&](int axis) { return grid_.margin(axis); };
   const auto end_inner = [&](int axis) { return grid_.margin(axis) + grid_.inner(axis); };
@@ -236,74 +251,109 @@ void ParallelEngine<D>::move_fluid() {
     else
       for (row[1] = first_inner(1); row[1] < end_inner(1); ++row[1]) add_row();
   }
-  std::vector<Vec<D, Int128>> given(model_.terms.force_field ? rows.size() : 0);  // by the field of force, to each row
-  const auto move_one = [&](std::uint32_t i, NeighbourSums<D> sums) {
+}
+
+/// Moves the PPs that lie in the region: most of those in the inner cells, and some that came in since these were
+/// filled.
+template <int D>
+void ParallelEngine<D>::move_fluid() {
+  FluidParticles<D>& fluid = state_.fluid;
+  const ParticleStep<D> constants = particle_step(model_, state_.step);
+  const Region<D>& region = halo_->region();
+  struct Moved {
+    std::uint64_t count = 0;
+    Lanes square{0.0};       // of the largest displacement, rcut^2
+    Vec<D, Int128> given{};  // by the field of force
+  };
+  const auto keep_farthest = [&](const auto& way, Moved& moved) {
+    const auto length = separation(model_.pair, way);
+    moved.square = larger(moved.square, Lanes(dot(length, length)));
+  };
+  const auto move_one = [&]<bool field>(std::uint32_t i, NeighbourSums<D> sums, Moved& moved,
+                                        std::bool_constant<field>) {
     Vec<D, double> x, v;
     for (int axis = 0; axis < D; ++axis) {
       x[axis] = fluid.x(axis)[i];
       v[axis] = fluid.v(axis)[i];
     }
+    if (!region.contains(x)) return;
+    if constexpr (field) {
+      const Vec<D, std::int64_t> impulse = field_impulse(model_.fluid_field, x);
+      sums.impulse += impulse;
+      for (int axis = 0; axis < D; ++axis) moved.given[axis] += impulse[axis];
+    }
+    const Vec<D, double> before = x;
     const RangeFault fault = advance(x, v, fluid.density()[i], sums, constants);
     if (fault != RangeFault::none) [[unlikely]]
       report(fault, i, v, sums);
     for (int axis = 0; axis < D; ++axis) {
-      fluid.x(axis)[i] = wrap_position(x[axis]);
+      fluid.x(axis)[i] = x[axis];
       fluid.v(axis)[i] = v[axis];
     }
+    keep_farthest(x - before, moved);
+    ++moved.count;
   };
-  /// False, and nothing done, where one of them is out of range.
-  const auto move_lanes = [&](std::uint32_t i, const NeighbourSums<D, IntLanes>& sums) {
+  /// False, and nothing done, where one of them is out of range or not in the region.
+  const auto move_lanes = [&](std::uint32_t i, const NeighbourSums<D, IntLanes>& sums, Moved& moved) {
     Vec<D, Lanes> x, v;
+    auto outside = Lanes(0.0) > Lanes(0.0);
     for (int axis = 0; axis < D; ++axis) {
       x[axis] = load_lanes(&fluid.x(axis)[i]);
       v[axis] = load_lanes(&fluid.v(axis)[i]);
+      outside = outside || x[axis] < region.low[axis] || x[axis] >= region.high[axis];
     }
     const auto motion = motion_of(x, v, sums, constants);
-    if (any_of_lanes(motion.beyond.any())) [[unlikely]]
+    if (any_of_lanes(outside || motion.beyond.any())) [[unlikely]]
       return false;
     for (int axis = 0; axis < D; ++axis) {
-      store_lanes(wrap_position(motion.x[axis]), &fluid.x(axis)[i]);
+      store_lanes(motion.x[axis], &fluid.x(axis)[i]);
       store_lanes(motion.v[axis], &fluid.v(axis)[i]);
     }
     store_lanes(motion.density, &fluid.density()[i]);
+    keep_farthest(motion.x - x, moved);
+    moved.count += lane_count;
     return true;
   };
-  const auto move = [&]<bool field>(const auto& pass, std::bool_constant<field>) {
-#pragma omp parallel for num_threads(options_.threads) schedule(static) if (options_.threads > 1)
-    for (std::size_t n = 0; n < rows.size(); ++n) {
-      const auto [first, last, plane] = rows[n];
-      for (std::uint32_t i = first; i < last;) {
-        if constexpr (!field)
-          if (i + lane_count <= last && pass.begins_lanes(i, plane) && move_lanes(i, pass.sums_of_lanes(i, plane))) {
-            i += lane_count;
-            continue;
-          }
-        NeighbourSums<D> sums = pass.sums(i, plane);
-        if constexpr (field) {
-          Vec<D, double> x;
-          for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];
-          const Vec<D, std::int64_t> impulse = field_impulse(model_.fluid_field, x);
-          sums.impulse += impulse;
-          for (int axis = 0; axis < D; ++axis) given[n][axis] += impulse[axis];
+  Moved all;
+  const auto collect = [&](const Moved& moved) {
+    all.count += moved.count;
+    all.square = larger(all.square, moved.square);
+    for (int axis = 0; axis < D; ++axis) all.given[axis] += moved.given[axis];
+  };
+  const auto move = [&]<bool field>(const auto& pass, std::bool_constant<field> with_field) {
+#pragma omp parallel num_threads(options_.threads) if (options_.threads > 1)
+    {
+      Moved moved;
+#pragma omp for schedule(static)
+      for (std::size_t n = 0; n < rows_.size(); ++n) {
+        const auto [first, last, plane] = rows_[n];
+        for (std::uint32_t i = first; i < last;) {
+          if constexpr (!field)
+            if (i + lane_count <= last && pass.begins_lanes(i, plane) &&
+                move_lanes(i, pass.sums_of_lanes(i, plane), moved)) {
+              i += lane_count;
+              continue;
+            }
+          move_one(i, pass.sums(i, plane), moved, with_field);
+          ++i;
         }
-        move_one(i++, sums);
       }
+#pragma omp critical
+      collect(moved);
     }
+    Moved entered;
+    for (const std::uint32_t i : residents_->near_outside()) move_one(i, pass.sums(i), entered, with_field);
+    collect(entered);
   };
   std::visit([&](const auto& pass) { with_force_field(model_, state_.step, [&](auto field) { move(pass, field); }); },
              pass_);
-  for (const Vec<D, Int128>& impulse : given) state_.outside_impulse += impulse;
-  std::size_t kept = 0;
-  for (const auto& [first, last, plane] : rows) {
-    std::copy(fluid.id.begin() + first, fluid.id.begin() + last, fluid.id.begin() + static_cast<std::ptrdiff_t>(kept));
-    for (auto& values : fluid.field)
-      std::copy(values.begin() + first, values.begin() + last, values.begin() + static_cast<std::ptrdiff_t>(kept));
-    kept += last - first;
-  }
-  fluid.resize(kept);
+  double square = 0.0;
+  for (int lane = 0; lane < lane_count; ++lane) square = std::max(square, static_cast<double>(all.square[lane]));
+  residents_->moved(std::sqrt(square));
   for (int axis = 0; axis < D; ++axis)
     state_.outside_impulse[axis] +=
-        static_cast<Int128>(kept) * static_cast<std::int64_t>(constants.kick[axis] / velocity_quantum);
+        all.given[axis] +
+        static_cast<Int128>(all.count) * static_cast<std::int64_t>(constants.kick[axis] / velocity_quantum);
 }
 
 template class ParallelEngine<2>;

@@ -12,6 +12,7 @@
 #include "parallel/fluid_pass.hpp"
 #include "parallel/frozen_densities.hpp"
 #include "parallel/halo.hpp"
+#include "parallel/residents.hpp"
 #include "parallel/stopwatch.hpp"
 #include "particles/cell_levels.hpp"
 #include "particles/engine.hpp"
@@ -32,7 +33,8 @@ class ParallelEngine {
                  const ParallelOptions& options);
 
   void step();
-  State<D>& state() { return state_; }
+  std::uint64_t present_step() const { return state_.step; }
+  State<D>& state();
   const std::string& range_error() const { return range_error_; }
   PhaseSeconds phase_seconds() const { return watch_.seconds(); }
   Traffic traffic() const;
@@ -49,8 +51,10 @@ class ParallelEngine {
 
  private:
   void start_domains();
+  bool faces_due() const { return options_.faces > 0 && (state_.step + 1) % options_.faces == 0; }
   void place_solids();
   void explain_pairs();
+  void find_rows();
   void move_fluid();
   void report(RangeFault fault, std::uint32_t i, const Vec<D, double>& v, const NeighbourSums<D>& sums);
   std::vector<HomeReport<D>> collect_reports();
@@ -61,11 +65,19 @@ class ParallelEngine {
   Domains<D> domains_;
   ParallelOptions options_;
   std::unique_ptr<Halo<D>> halo_;
+  std::unique_ptr<Residents<D>> residents_;
   CellGrid<D> grid_;
   std::unique_ptr<CellLevels<D>> levels_;
   ModelPass<D> pass_;
   FrozenDensities<D> densities_;
-  State<D> state_;
+  State<D> state_;  // with ghosts, and positions in the frame of the region, while PPs stay
+
+  /// PPs of the inner cells of a row, as they were ordered last.
+  struct Row {
+    std::uint32_t first, last;
+    int plane;
+  };
+  std::vector<Row> rows_;
 
   // Of the present step:
   std::vector<Solid<D>> copies_;

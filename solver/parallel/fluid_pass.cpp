@@ -3,23 +3,13 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <iterator>
 
 #ifdef MAPPM_FLOATING_SUMS
 #include "parallel/floating_pairs.hpp"
 #endif
 
 namespace mappm {
-
-namespace {
-
-struct UnitFactor {
-  template <int D, class Real>
-  Real operator()(const Vec<D, Real>&) const {
-    return constant<Real>(1.0);
-  }
-};
-
-}  // namespace
 
 template <int D, class Numbers>
 MAPPM_INLINE PairCentre<D, Numbers> FluidPass<D, Numbers>::centre(const FrozenInStep<D>& fp) const {
@@ -33,21 +23,25 @@ MAPPM_INLINE PairCentre<D, Numbers> FluidPass<D, Numbers>::centre(const FrozenIn
   return centre;
 }
 
-/// Calls work(first, last, search) for bands of planes (cells with one coordinate on the slowest axis). What a band
-/// writes lies at most `margin` planes beyond itself, so bands of one parity, each two margins high, run side by side.
+template <int D, class Numbers>
+int FluidPass<D, Numbers>::band_height(const CellGrid<D>& grid) const {
+  const int planes = grid.count(D - 1);
+  return threads_ == 1 ? planes : std::max(2 * grid.margin(D - 1), planes / (4 * threads_) + 1);
+}
+
+/// Calls work(first, last, search, band) for bands of planes (cells with one coordinate on the slowest axis). What a
+/// band writes lies at most `margin` planes beyond itself, so bands of one parity, each two margins high, run side by
+/// side.
 template <int D, class Numbers>
 template <class Work>
 void FluidPass<D, Numbers>::for_each_band(const CellGrid<D>& grid, Work&& work) {
-  const int planes = grid.count(D - 1);
+  const int planes = grid.count(D - 1), height = band_height(grid), bands = (planes + height - 1) / height;
   searches_.resize(static_cast<std::size_t>(threads_));
-  if (threads_ == 1) return work(0, planes, searches_.front());
-  const int height = std::max(2 * grid.margin(D - 1), planes / (4 * threads_) + 1);
-  const int bands = (planes + height - 1) / height;
-  for (int parity = 0; parity < 2; ++parity) {
-#pragma omp parallel for num_threads(threads_) schedule(dynamic)
+  for (int parity = 0; parity < std::min(bands, 2); ++parity) {
+#pragma omp parallel for num_threads(threads_) schedule(dynamic) if (threads_ > 1)
     for (int band = parity; band < bands; band += 2)
       work(band * height, std::min(planes, (band + 1) * height),
-           searches_[static_cast<std::size_t>(omp_get_thread_num())]);
+           searches_[static_cast<std::size_t>(omp_get_thread_num())], static_cast<std::size_t>(band));
   }
 }
 
@@ -80,16 +74,74 @@ std::vector<std::vector<std::uint32_t>> frozen_by_plane(const CellGrid<D>& grid,
 }
 
 template <int D, class Numbers>
-void FluidPass<D, Numbers>::sum(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
+void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region,
+                                 double reach) {
   blocks_.fill(model_, numbers_, fluid, grid);
   half_rows_ = row_offsets(grid, true);
   all_rows_ = row_offsets(grid, false);
-  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
-    for_each_band(grid, [&](int first, int last, Search& search) {
-      for_each_row(grid, first, last,
-                   [&](const Vec<D, int>& row) { sum_row<Kernel, transport>(fluid, grid, row, search); });
+  const auto square = static_cast<typename Numbers::Real>(reach * reach);
+  const std::vector<std::uint8_t> inside = places_in(fluid, grid, region);  // of each place
+  const auto reaches_inside = [&](std::uint32_t block) {
+    const auto first = inside.begin() + static_cast<std::ptrdiff_t>(block) * lane_count;
+    return std::find(first, first + lane_count, 1) != first + lane_count;
+  };
+  const int height = band_height(grid);
+  kept_.resize(static_cast<std::size_t>((grid.count(D - 1) + height - 1) / height));
+  for_each_band(grid, [&](int first, int last, Search& search, std::size_t band) {
+    KeptLists<D, Numbers>& kept = kept_[band];
+    kept.clear();
+    std::vector<std::uint32_t> chosen;
+    for_each_row(grid, first, last, [&](const Vec<D, int>& row) {
+      for_each_list(fluid, grid, row, true, search, [&](Lists& lists) {
+        lists.template measure<false>(numbers_, blocks_.data(), square);
+        lists.for_each_centre([&](std::uint32_t place, std::span<const std::uint32_t> blocks) {
+          if (inside[place]) return kept.add(place, blocks);
+          chosen.clear();
+          std::ranges::copy_if(blocks, std::back_inserter(chosen), reaches_inside);
+          kept.add(place, chosen);
+        });
+      });
     });
   });
+}
+
+template <int D, class Numbers>
+void FluidPass<D, Numbers>::sum(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
+  blocks_.fill(model_, numbers_, fluid, grid);
+  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
+    for_each_band(grid, [&](int, int, Search& search, std::size_t band) {
+      kept_[band].template sum<Kernel, transport>(numbers_, blocks_, search.squares);
+    });
+  });
+}
+
+template <int D, class Numbers>
+std::size_t FluidPass<D, Numbers>::listed_blocks() const {
+  std::size_t count = 0;
+  for (const auto& kept : kept_) count += kept.block_count();
+  return count;
+}
+
+template <int D, class Numbers>
+std::size_t FluidPass<D, Numbers>::bytes() const {
+  std::size_t bytes = blocks_.bytes();
+  for (const auto& kept : kept_) bytes += kept.bytes();
+  return bytes;
+}
+
+/// Whether each place holds a PP in `region`.
+template <int D, class Numbers>
+std::vector<std::uint8_t> FluidPass<D, Numbers>::places_in(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
+                                                           const Region<D>& region) const {
+  std::vector<std::uint8_t> inside(blocks_.place_count(), 0);
+  for (int plane = 0; plane < grid.count(D - 1); ++plane)
+    for (std::uint32_t i = grid.plane_start(plane); i < grid.plane_start(plane + 1); ++i) {
+      bool in = true;
+      for (int axis = 0; axis < D; ++axis)
+        in = in && fluid.x(axis)[i] >= region.low[axis] && fluid.x(axis)[i] < region.high[axis];
+      inside[i + blocks_.gap(plane)] = in ? 1 : 0;
+    }
+  return inside;
 }
 
 template <int D, class Numbers>
@@ -99,7 +151,7 @@ void FluidPass<D, Numbers>::add_frozen(const CellGrid<D>& grid, const std::vecto
   if (frozen.empty()) return;
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     const std::vector<std::vector<std::uint32_t>> by_plane = frozen_by_plane(grid, frozen);
-    for_each_band(grid, [&](int first, int last, Search& search) {
+    for_each_band(grid, [&](int first, int last, Search& search, std::size_t) {
       for (int plane = first; plane < last; ++plane)
         for_each_frozen_list(grid, frozen, by_plane[static_cast<std::size_t>(plane)], search,
                              [&](Lists& lists) { sum_frozen<Kernel, transport>(frozen, lists, frozen_sums); });
@@ -107,12 +159,12 @@ void FluidPass<D, Numbers>::add_frozen(const CellGrid<D>& grid, const std::vecto
   });
 }
 
-/// All pairs of PPs whose first one lies in this row: calls work(lists) with the partners of some of its particles. A
-/// pair of two ghosts is left out.
+/// All pairs of PPs whose first one lies in this row: calls work(lists) with the partners of some of its particles.
+/// Without `ghost_pairs` a pair of two ghosts, which lie in margin cells, is left out.
 template <int D, class Numbers>
 template <class Work>
 void FluidPass<D, Numbers>::for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
-                                          const Vec<D, int>& row, Search& search, Work&& work) {
+                                          const Vec<D, int>& row, bool ghost_pairs, Search& search, Work&& work) {
   bool inner_row = true;
   for (int axis = 1; axis < D; ++axis) inner_row = inner_row && grid.is_inner(axis, row[axis]);
   NearRows<D>& near = search.near;
@@ -123,7 +175,7 @@ void FluidPass<D, Numbers>::for_each_list(const FluidParticles<D>& fluid, const 
     const std::uint32_t begin = grid.start(cells + static_cast<std::size_t>(begin_cell)) + gap;
     const std::uint32_t end = grid.start(cells + static_cast<std::size_t>(end_cell)) + gap;
     if (begin == end) return;
-    near.fit(grid, blocks_, half_rows_, row, ghost);
+    near.fit(grid, blocks_, half_rows_, row, ghost && !ghost_pairs);
     for (std::uint32_t group = begin - begin % lane_count; group < end; group += lane_count) {
       Vec<D, Lanes> places;
       for (int axis = 0; axis < D; ++axis) places[axis] = load_lanes(&fluid.x(axis)[group - gap]);
@@ -142,7 +194,7 @@ void FluidPass<D, Numbers>::for_each_list(const FluidParticles<D>& fluid, const 
     }
   };
   const int first_inner = grid.margin(0), end_inner = grid.margin(0) + grid.inner(0);
-  if (!inner_row) return run(0, grid.count(0), true);
+  if (!inner_row || ghost_pairs) return run(0, grid.count(0), true);
   run(0, first_inner, true);
   run(first_inner, end_inner, false);
   run(end_inner, grid.count(0), true);
@@ -153,18 +205,7 @@ void FluidPass<D, Numbers>::for_each_list(const FluidParticles<D>& fluid, const 
                                           const std::function<void(Lists&)>& visit) {
   Search search;
   for_each_row(grid, 0, grid.count(D - 1),
-               [&](const Vec<D, int>& row) { for_each_list(fluid, grid, row, search, visit); });
-}
-
-template <int D, class Numbers>
-template <class Kernel, bool transport>
-void FluidPass<D, Numbers>::sum_row(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row,
-                                    Search& search) {
-  for_each_list(fluid, grid, row, search, [&](Lists& lists) {
-    sum_lists<Kernel, transport, false>(
-        numbers_, blocks_.data(), lists, [&](std::uint32_t i) { return blocks_.centre(i); },
-        [](std::uint32_t) { return UnitFactor{}; }, [&](std::uint32_t i, const Sums& sums) { blocks_.add(i, sums); });
-  });
+               [&](const Vec<D, int>& row) { for_each_list(fluid, grid, row, true, search, visit); });
 }
 
 /// FPs of a plane of cells, ordered by rows: calls work(lists) with the PPs near some of them.
@@ -247,7 +288,7 @@ std::optional<std::vector<PartnerTrace<D>>> FluidPass<D, Numbers>::trace(const F
   Search search;
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     for_each_row(grid, 0, grid.count(D - 1), [&](const Vec<D, int>& row) {
-      for_each_list(fluid, grid, row, search, [&](const Lists& lists) {
+      for_each_list(fluid, grid, row, false, search, [&](const Lists& lists) {
         lists.for_each_partner([&](std::uint32_t i, std::uint32_t j) {
           if (i != place && j != place) return;
           const PairSums sums = sums_of_pair<Kernel, transport, false>(blocks_.centre(i), j, UnitFactor{});

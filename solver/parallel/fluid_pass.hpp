@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "parallel/kept_lists.hpp"
 #include "parallel/lanes_loop.hpp"
 #include "parallel/near_rows.hpp"
 #include "particles/cell_grid.hpp"
@@ -25,8 +26,12 @@ class FluidPass {
   FluidPass(const Model<D>& model, int threads)
       : model_(model), numbers_(model.pair, model.rest_density), threads_(threads) {}
 
-  /// Sums over all PPs near the owned PPs in `fluid`, which is in the order of `grid`; sums of ghosts are partial and
-  /// meaningless.
+  /// Finds the pairs of which one PP lies in `region`, up to a distance of `reach` (rcut, at least 1): `sum` finds all
+  /// within rcut until two PPs have come nearer by the rest, or one from outside the region has entered the part that
+  /// matters. `fluid` is in the order of `grid`, whose cells are fit to that reach.
+  void list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region, double reach);
+  /// After `list`, with the PPs in the same order: sums over all PPs near each PP of the region; sums of others are
+  /// partial and meaningless.
   void sum(FluidParticles<D>& fluid, const CellGrid<D>& grid);
   /// After `sum`: adds the pairs of PPs and FPs. `frozen` are all FPs in reach; `frozen_sums[k]` becomes the sum over
   /// PPs where FP k lies in the region.
@@ -45,14 +50,18 @@ class FluidPass {
   }
   NeighbourSums<D> sums(std::uint32_t i) const { return numbers_.sums(blocks_.sums(blocks_.place(i))); }
 
-  /// After both and with their arguments: what each partner gave to the PP with this id that lies in the region, every
-  /// pair of the pass taken alone; none where there is no such PP. For an FP `id` is the index of its solid in the
-  /// step.
+  /// After all three in one step and with their arguments: what each partner gave to the PP with this id that lies in
+  /// the region of the grid, every pair of the pass taken alone; none where there is no such PP. For an FP `id` is the
+  /// index of its solid in the step.
   std::optional<std::vector<PartnerTrace<D>>> trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
                                                     const std::vector<FrozenInStep<D>>& frozen, std::uint64_t particle);
 
-  /// After `sum` and with its arguments: calls visit(lists) with the pairs of PPs, lists by lists as `sum` meets them.
+  /// After `list` and with its arguments: calls visit(lists) with the candidates it meets, lists by lists.
   void for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const std::function<void(Lists&)>& visit);
+
+  /// Blocks in the lists, and memory of blocks and lists, bytes.
+  std::size_t listed_blocks() const;
+  std::size_t bytes() const;
 
  private:
   using Centre = PairCentre<D, Numbers>;
@@ -61,18 +70,17 @@ class FluidPass {
   struct Search {
     NearRows<D> near;
     Lists lists;
+    Column<typename Numbers::Real> squares;
   };
   template <class Work>
   void for_each_row(const CellGrid<D>& grid, int first_plane, int last_plane, Work&& work) const;
   template <class Work>
-  void for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row, Search& search,
-                     Work&& work);
+  void for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row, bool ghost_pairs,
+                     Search& search, Work&& work);
   template <class Work>
   void for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
                             std::span<const std::uint32_t> chosen, Search& search, Work&& work) const;
   Centre centre(const FrozenInStep<D>& fp) const;
-  template <class Kernel, bool transport>
-  void sum_row(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row, Search& search);
   template <class Kernel, bool transport>
   void sum_frozen(const std::vector<FrozenInStep<D>>& frozen, Lists& lists, std::vector<NeighbourSums<D>>& frozen_sums);
   struct PairSums {
@@ -80,6 +88,9 @@ class FluidPass {
   };
   template <class Kernel, bool transport, bool lanes_first, class Beta>
   PairSums sums_of_pair(const Centre& centre, std::uint32_t place, const Beta& beta) const;
+  std::vector<std::uint8_t> places_in(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
+                                      const Region<D>& region) const;
+  int band_height(const CellGrid<D>& grid) const;
   template <class Work>
   void for_each_band(const CellGrid<D>& grid, Work&& work);
 
@@ -89,6 +100,7 @@ class FluidPass {
   std::vector<Vec<D, int>> half_rows_, all_rows_;
   std::vector<Search> searches_;  // of the threads
   PairBlocks<D, Numbers> blocks_;
+  std::vector<KeptLists<D, Numbers>> kept_;  // of each band
 };
 
 /// The pass in the precision of the model.

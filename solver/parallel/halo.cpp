@@ -9,21 +9,6 @@
 
 namespace mappm {
 
-namespace {
-
-/// `region` widened by a length (rcut) on every side, to whole quanta.
-template <int D>
-Region<D> widened(const Model<D>& model, Region<D> region, double margin) {
-  for (int axis = 0; axis < D; ++axis) {
-    const double quanta = std::ceil(margin / model.pair.length[axis]);
-    region.low[axis] -= quanta;
-    region.high[axis] += quanta;
-  }
-  return region;
-}
-
-}  // namespace
-
 template <int D>
 Halo<D>::Halo(const Model<D>& model, const Domains<D>& domains, const Communicator& communicator)
     : model_(model),
@@ -32,7 +17,7 @@ Halo<D>::Halo(const Model<D>& model, const Domains<D>& domains, const Communicat
       region_(domains.region(communicator.rank())),
       reach_(widened(model, region_, 1.0)),
       solid_reach_(widened(model, region_, solid_margin(model))),
-      interior_(widened(model, region_, -1.0)),
+      interior_(widened(model, region_, -1.0 - skin)),
       solid_interior_(widened(model, region_, -solid_margin(model))),
       images_(domains.images(communicator.rank())),
       partners_(domains.partners(communicator.rank())),
@@ -42,6 +27,7 @@ Halo<D>::Halo(const Model<D>& model, const Domains<D>& domains, const Communicat
   for (const int partner : partners_) traffic_.neighbours += partner != communicator.rank() ? 1 : 0;
   for (const Image<D>& image : images_) {
     image_reach_.push_back(widened(model, image.region, 1.0));
+    image_ghost_reach_.push_back(widened(model, image.region, 1.0 + skin));
     image_solid_reach_.push_back(widened(model, image.region, solid_margin(model)));
   }
 }
@@ -69,33 +55,44 @@ Vec<D, double> Halo<D>::in_frame(Vec<D, double> x) const {
 }
 
 template <int D>
-void Halo<D>::exchange(State<D>& state, std::vector<Solid<D>>& copies, Stopwatch& watch) {
-  pack_fluid(state.fluid);
+bool Halo<D>::exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch) {
+  if (!residents.lasts()) residents.leave(state.fluid);
+  pack_fluid(state.fluid, residents);
   watch.end(Phase::exchange);
   pack_solids(state.solids);
   watch.end(Phase::copies);
   swap_messages();
   std::vector<BufferReader> readers(in_.begin(), in_.end());
-  for (BufferReader& reader : readers) unpack_fluid(reader, state.fluid);
+  const bool stay = residents.staying() && residents.refresh(state.fluid, readers);
+  if (!stay) {
+    residents.leave(state.fluid);
+    readers = {in_.begin(), in_.end()};
+    for (BufferReader& reader : readers) unpack_fluid(reader, state.fluid);
+  }
   watch.end(Phase::exchange);
   unpack_solids(readers, state.solids, copies);
   watch.end(Phase::copies);
+  return stay;
 }
 
 /// Message to each partner: number of PPs, then their ids, then field by field. PPs near the border of the region, or
 /// beyond it, are moved to its frame.
 template <int D>
-void Halo<D>::pack_fluid(FluidParticles<D>& fluid) {
+void Halo<D>::pack_fluid(FluidParticles<D>& fluid, const Residents<D>& residents) {
   for (auto& chosen : selected_) chosen.clear();
-  for (std::size_t i = 0; i < fluid.size(); ++i) {
+  const auto select = [&](std::size_t i) {
     Vec<D, double> x;
     for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];
-    if (interior_.contains(x)) continue;
+    if (interior_.contains(x)) return;
     x = in_frame(x);
     for (int axis = 0; axis < D; ++axis) fluid.x(axis)[i] = x[axis];
     for (std::size_t n = 0; n < images_.size(); ++n)
-      if (image_reach_[n].contains(x)) selected_[n].push_back(static_cast<std::uint32_t>(i));
-  }
+      if (image_ghost_reach_[n].contains(x)) selected_[n].push_back(static_cast<std::uint32_t>(i));
+  };
+  if (residents.staying())
+    residents.for_each_sent(select);
+  else
+    for (std::size_t i = 0; i < fluid.size(); ++i) select(i);
   for (std::size_t partner = 0; partner < partners_.size(); ++partner) {
     Buffer& buffer = out_[partner];
     std::uint64_t count = 0;

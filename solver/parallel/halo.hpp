@@ -12,6 +12,7 @@
 #include "parallel/communicator.hpp"
 #include "parallel/domains.hpp"
 #include "parallel/message.hpp"
+#include "parallel/residents.hpp"
 #include "parallel/stopwatch.hpp"
 #include "particles/engine.hpp"
 #include "particles/solid_step.hpp"
@@ -33,13 +34,14 @@ class Halo {
   Halo(const Model<D>& model, const Domains<D>& domains, const Communicator& communicator);
 
   const Region<D>& region() const { return region_; }
-  /// The region and its margin of rcut: where FPs and ghosts matter.
+  /// The region and its margin of rcut: where FPs matter.
   const Region<D>& reach() const { return reach_; }
 
-  /// On entry `state` holds what this process owned before the particles moved, at their new positions in the box. On
-  /// return it holds its particles and ghosts, all in its frame, and its solids; `copies` holds copies of solids. The
-  /// message itself counts as one of PPs.
-  void exchange(State<D>& state, std::vector<Solid<D>>& copies, Stopwatch& watch);
+  /// On entry `state` holds what this process owned before the particles moved, at their new positions, and the PPs of a
+  /// stay. On return it holds its particles and, as far out as rcut + skin, ghosts, all in its frame, and its solids;
+  /// `copies` holds copies of solids. True if the stay of the PPs goes on, in which a ghost that has left that margin
+  /// may be an old one; otherwise it has ended, and they are in any order. The message itself counts as one of PPs.
+  bool exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch);
 
   /// Delivers reports to the owners of the solids; returns those for solids owned here.
   std::vector<HomeReport<D>> send_home(const std::vector<Solid<D>>& copies, std::vector<HomeReport<D>>&& reports);
@@ -48,7 +50,7 @@ class Halo {
 
  private:
   Vec<D, double> in_frame(Vec<D, double> x) const;
-  void pack_fluid(FluidParticles<D>& fluid);
+  void pack_fluid(FluidParticles<D>& fluid, const Residents<D>& residents);
   void pack_solids(std::vector<Solid<D>>& solids);
   void pack_solid(const Solid<D>& solid, std::size_t image);
   void unpack_fluid(BufferReader& reader, FluidParticles<D>& fluid);
@@ -62,7 +64,7 @@ class Halo {
   Region<D> region_, reach_, solid_reach_;
   Region<D> interior_, solid_interior_;  // particles and solids here are needed by nobody else
   std::vector<Image<D>> images_;
-  std::vector<Region<D>> image_reach_;  // margin of rcut around each image
+  std::vector<Region<D>> image_reach_, image_ghost_reach_;  // around each image, margins of rcut and of rcut + skin
   std::vector<Region<D>> image_solid_reach_;
   std::vector<int> partners_;
   std::vector<Buffer> out_, in_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -68,7 +69,38 @@ MAPPM_INLINE void pair_block(const Numbers& numbers, PairBlock<D, Numbers>& bloc
   sums.density += given.density;
 }
 
+inline constexpr std::size_t roots_ahead = 4;
+
+/// Calls visit(block, distances) for the blocks of each centre, between begin(particle) and end(particle). Of block n,
+/// n < centres.back().end, squares(n) are the squared distances; they become distances. Some more are read behind it.
+template <class RealLanes, class Centres, class Squares, class Begin, class Visit, class End>
+MAPPM_INLINE void for_each_block(const Centres& centres, std::size_t n, const std::uint32_t* blocks, Squares&& squares,
+                                 Begin&& begin, Visit&& visit, End&& end) {
+  // A root takes as long as half of the rest: it is taken some blocks ahead.
+  const auto take_root = [&](std::size_t at) __attribute__((always_inline)) {
+    cut_distance(RealLanes(squares(at), std::experimental::vector_aligned))
+        .copy_to(squares(at), std::experimental::vector_aligned);
+  };
+  for (std::size_t at = n; at < n + roots_ahead; ++at) take_root(at);
+  for (const auto& centre : centres) {
+    begin(centre.particle);
+    for (; n < centre.end; ++n) {
+      take_root(n + roots_ahead);
+      visit(blocks[n], RealLanes(squares(n), std::experimental::vector_aligned));
+    }
+    end(centre.particle);
+  }
+}
+
 }  // namespace detail
+
+/// beta between PPs.
+struct UnitFactor {
+  template <int D, class Real>
+  MAPPM_INLINE Real operator()(const Vec<D, Real>&) const {
+    return constant<Real>(1.0);
+  }
+};
 
 /// The partners of some particles, the centres, as blocks of lanes. Ranges, distances and pairs are worked out for all
 /// of them in turn, in loops whose length the processor can guess.
@@ -118,21 +150,23 @@ class PartnerLists {
           visit(centres_[owner_[n]].particle, block_[n] * lane_count + lane);
   }
 
-  /// Works out the distances of all blocks, and drops those that have no partner within the cutoff.
+  /// Works out the distances of all blocks, and drops those that have no partner within a reach, whose square is given
+  /// in rcut^2.
   template <bool lanes_first>
-  MAPPM_INLINE void measure(const Numbers& numbers, const PairBlock<D, Numbers>* blocks) {
-    make_room(size_ + ahead);
+  MAPPM_INLINE void measure(const Numbers& numbers, const PairBlock<D, Numbers>* blocks, Real square_of_reach) {
+    make_room(size_ + detail::roots_ahead);
     const Columns columns = this->columns();
     const Centre* const centres = centres_.data();
     for (std::size_t n = 0; n < size_; ++n) {
       const Vec<D, RealLanes> r =
           detail::separation_of_block<lanes_first>(numbers, blocks[columns.block[n]], centres[columns.owner[n]].x);
-      // At least 1 in lanes that are no partners.
+      // At least the square of the reach in lanes that are no partners.
       const RealLanes beside = larger(RealLanes(columns.first[n]) - lane_numbers<RealLanes>(),
-                                      lane_numbers<RealLanes>() - RealLanes(columns.last[n]));
+                                      lane_numbers<RealLanes>() - RealLanes(columns.last[n])) *
+                               RealLanes(square_of_reach);
       const RealLanes square = larger(dot(r, r), beside);
       square.copy_to(columns.distance + n * lane_count, std::experimental::vector_aligned);
-      columns.used[n] = any_below(square, Real(1)) ? 1 : 0;
+      columns.used[n] = any_below(square, square_of_reach) ? 1 : 0;
     }
     // By itself: in the loop above every load would wait for the place of the store before it.
     std::size_t kept = 0, n = 0;
@@ -144,7 +178,8 @@ class PartnerLists {
       }
       centre.end = static_cast<std::uint32_t>(kept);
     }
-    for (std::size_t after = 0; after < ahead; ++after) columns.from[kept + after] = static_cast<std::uint32_t>(size_);
+    for (std::size_t after = 0; after < detail::roots_ahead; ++after)
+      columns.from[kept + after] = static_cast<std::uint32_t>(size_);
     size_ = kept;
   }
 
@@ -153,30 +188,26 @@ class PartnerLists {
   template <class Begin, class Visit, class End>
   MAPPM_INLINE void for_each_block(Begin&& begin, Visit&& visit, End&& end) {
     const Columns columns = this->columns();
-    const auto distances = [&](std::size_t n) __attribute__((always_inline)) {
-      return columns.distance + std::size_t{columns.from[n]} * lane_count;
-    };
-    // A root takes as long as half of the rest: it is taken some blocks ahead.
-    const auto take_root = [&](std::size_t n) __attribute__((always_inline)) {
-      cut_distance(RealLanes(distances(n), std::experimental::vector_aligned))
-          .copy_to(distances(n), std::experimental::vector_aligned);
-    };
-    for (std::size_t n = 0; n < ahead; ++n) take_root(n);
+    detail::for_each_block<RealLanes>(
+        centres_, 0, columns.block, [&](std::size_t n) __attribute__((always_inline)) {
+          return columns.distance + std::size_t{columns.from[n]} * lane_count;
+        },
+        begin, visit, end);
+  }
+
+  /// After `measure`: calls visit(particle, blocks) with the blocks of each centre.
+  template <class Visit>
+  void for_each_centre(Visit&& visit) const {
     std::size_t n = 0;
     for (const Centre& centre : centres_) {
-      begin(centre.particle);
-      for (; n < centre.end; ++n) {
-        take_root(n + ahead);
-        visit(columns.block[n], RealLanes(distances(n), std::experimental::vector_aligned));
-      }
-      end(centre.particle);
+      visit(centre.particle, std::span(block_).subspan(n, centre.end - n));
+      n = centre.end;
     }
   }
 
  private:
   static constexpr std::uint32_t written = 8;            // blocks at once: longer ranges are rare
   static constexpr std::size_t full = 512 / lane_count;  // blocks: their distances stay in the nearest cache
-  static constexpr std::size_t ahead = 3;
   struct Centre {
     std::uint32_t particle, end;  // and where its blocks end
     Places x;
@@ -242,17 +273,16 @@ class PartnerLists {
 };
 
 /// All pairs of the lists: adds to the sums of the partners, and calls receive(particle, sums) with what each centre
-/// receives. centre_of(n) gives a PairCentre, beta_of(n) a function of the separation. Zeros are added to lanes beside
-/// the partners. Blocks of the lists that lie beyond the cutoff are dropped.
-template <class Kernel, bool transport, bool lanes_first, int D, class Numbers, class CentreOf, class BetaOf,
+/// receives. `walk` calls for_each_block. centre_of(n) gives a PairCentre, beta_of(n) a function of the separation.
+/// Zeros are added to lanes beside the partners.
+template <class Kernel, bool transport, bool lanes_first, int D, class Numbers, class Walk, class CentreOf, class BetaOf,
           class Receive>
-void sum_lists(const Numbers& numbers, PairBlock<D, Numbers>* const blocks, PartnerLists<D, Numbers>& lists,
-               CentreOf&& centre_of, BetaOf&& beta_of, Receive&& receive) {
-  lists.template measure<lanes_first>(numbers, blocks);
+MAPPM_INLINE void sum_blocks(const Numbers& numbers, PairBlock<D, Numbers>* const blocks, Walk&& walk,
+                             CentreOf&& centre_of, BetaOf&& beta_of, Receive&& receive) {
   PairResult<D, decltype(load_lanes(blocks->density))> sums;
   PairCentre<D, Numbers> centre;
   std::decay_t<decltype(beta_of(0))> beta = beta_of(0);
-  lists.for_each_block(
+  walk(
       [&](std::uint32_t n) __attribute__((always_inline)) {
         centre = centre_of(n);
         beta = beta_of(n);
@@ -262,6 +292,17 @@ void sum_lists(const Numbers& numbers, PairBlock<D, Numbers>* const blocks, Part
         detail::pair_block<Kernel, transport, lanes_first>(numbers, blocks[block], centre, q, beta, sums);
       },
       [&](std::uint32_t n) __attribute__((always_inline)) { receive(n, detail::total(sums)); });
+}
+
+/// `sum_blocks` over lists of this step. Blocks that lie beyond the cutoff are dropped from them.
+template <class Kernel, bool transport, bool lanes_first, int D, class Numbers, class CentreOf, class BetaOf,
+          class Receive>
+void sum_lists(const Numbers& numbers, PairBlock<D, Numbers>* const blocks, PartnerLists<D, Numbers>& lists,
+               CentreOf&& centre_of, BetaOf&& beta_of, Receive&& receive) {
+  lists.template measure<lanes_first>(numbers, blocks, 1);
+  sum_blocks<Kernel, transport, lanes_first, D>(
+      numbers, blocks, [&](auto&&... calls) __attribute__((always_inline)) { lists.for_each_block(calls...); },
+      centre_of, beta_of, receive);
 }
 
 }  // namespace mappm

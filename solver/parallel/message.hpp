@@ -30,27 +30,34 @@ void put(Buffer& buffer, const std::vector<T>& values) {
 /// Reads back, in the same order, what `put` wrote.
 class BufferReader {
  public:
-  explicit BufferReader(const Buffer& buffer) : buffer_(buffer) {}
-  bool at_end() const { return at_ == buffer_.size(); }
+  explicit BufferReader(const Buffer& buffer) : buffer_(&buffer) {}
+  bool at_end() const { return at_ == buffer_->size(); }
 
   template <class T>
   T get() {
     static_assert(std::is_trivially_copyable_v<T>);
     T value;
-    std::memcpy(&value, buffer_.data() + at_, sizeof(T));
+    std::memcpy(&value, buffer_->data() + at_, sizeof(T));
     at_ += sizeof(T);
     return value;
+  }
+  /// So many values, where they lie: they may be at any address.
+  template <class T>
+  const std::byte* skip(std::size_t count) {
+    const std::byte* const values = buffer_->data() + at_;
+    at_ += count * sizeof(T);
+    return values;
   }
   template <class T>
   void get(std::vector<T>& values) {
     values.resize(get<std::size_t>());
     if (values.empty()) return;
-    std::memcpy(values.data(), buffer_.data() + at_, values.size() * sizeof(T));
+    std::memcpy(values.data(), buffer_->data() + at_, values.size() * sizeof(T));
     at_ += values.size() * sizeof(T);
   }
 
  private:
-  const Buffer& buffer_;
+  const Buffer* buffer_;
   std::size_t at_ = 0;
 };
 

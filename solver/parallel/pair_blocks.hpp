@@ -29,7 +29,7 @@ struct PairCentre {
 };
 
 /// All PPs in the order of a grid. Each plane of cells begins a block, so no two planes share one: a place is the index
-/// of a PP in that order and the gaps before it.
+/// of a PP in that order and the gaps before it. In later steps the PPs may have left their cells.
 template <int D, class Numbers>
 class PairBlocks {
  public:
@@ -57,13 +57,21 @@ class PairBlocks {
     }
     reserve_tightly(blocks_, place / lane_count);
     blocks_.resize(place / lane_count);
-    for (int plane = 0; plane < planes; ++plane)
-      for (std::uint32_t i = grid.plane_start(plane); i < grid.plane_start(plane + 1); i += lane_count)
-        fill_block(model, numbers, fluid, i, blocks_[(i + gap(plane)) / lane_count]);
+    for (int plane = 0; plane < planes; ++plane) {
+      const std::uint32_t end = grid.plane_start(plane + 1);
+      for (std::uint32_t i = grid.plane_start(plane); i < end; i += lane_count) {
+        Block& block = blocks_[(i + gap(plane)) / lane_count];
+        fill_block(model, numbers, fluid, i, block);
+        // Lanes of a gap are nobody's partners: they lie far from the plane.
+        for (std::uint32_t lane = end - i; lane < lane_count; ++lane)
+          block.x[D - 1][lane] = Numbers::far_from(block.x[D - 1][0]);
+      }
+    }
   }
 
   Block* data() { return blocks_.data(); }
   std::size_t place_count() const { return blocks_.size() * lane_count; }
+  std::size_t bytes() const { return blocks_.capacity() * sizeof(Block); }
   /// The block of a place alone, with sums of zero.
   PairBlocks one(std::uint32_t place) const {
     PairBlocks result;

@@ -45,6 +45,8 @@ class DoublePairs {
     return x;
   }
   MAPPM_INLINE static Lanes apart(const Lanes& a, const Lanes& b) { return a - b; }
+  /// A place more than rcut away from all that lie within a few rcut of a place, on one axis.
+  static double far_from(double place) { return place + 4.0 * box_quanta; }
   /// Sums of one PP, or of lanes, in quanta of the state.
   template <class Integer>
   MAPPM_INLINE NeighbourSums<D, Integer> sums(const PairResult<D, Integer>& given) const {
@@ -90,6 +92,9 @@ class SinglePairs {
     return lanes_of<std::int32_t>(to_fixed(x * Lanes(1.0 / place_[axis])));
   }
   MAPPM_INLINE static FloatLanes apart(const Int32Lanes& a, const Int32Lanes& b) { return lanes_of<float>(a - b); }
+  static std::int32_t far_from(std::int32_t place) {  // half a window
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(place) + (std::uint32_t{1} << 31));
+  }
   /// Sums keep their momentum exactly: a quantum here is a whole number of those of the state.
   template <class Integer>
   MAPPM_INLINE auto sums(const PairResult<D, Integer>& given) const {

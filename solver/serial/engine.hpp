@@ -19,6 +19,7 @@ class SerialEngine {
   SerialEngine(const Model<D>& model, State<D>&& state, Neighbours neighbours);
 
   void step();
+  std::uint64_t present_step() const { return state_.step; }
   State<D>& state() { return state_; }
   const std::string& range_error() const { return range_error_; }
   void trace_next_step(std::uint64_t particle) { traced_particle_ = particle; }

@@ -1,0 +1,95 @@
+// Lists of pairs of PPs that serve for several steps: while the PPs keep their places, only distances are worked out
+// anew.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "parallel/lanes_loop.hpp"
+
+namespace mappm {
+
+/// Of each centre, a place, the blocks that hold partners. All lanes of a block count, but in the centre's own block
+/// only those behind it.
+template <int D, class Numbers>
+class KeptLists {
+  using Real = typename Numbers::Real;
+  using RealLanes = typename Numbers::RealLanes;
+
+ public:
+  void clear() {
+    centres_.clear();
+    blocks_.clear();
+  }
+
+  /// Adds the blocks of a centre, in rising order as far as two could be the same.
+  void add(std::uint32_t place, std::span<const std::uint32_t> blocks) {
+    const std::size_t first = blocks_.size();
+    for (const std::uint32_t block : blocks)  // a block on the border of two rows was found in both
+      if (blocks_.size() == first || blocks_.back() != block) blocks_.push_back(block);
+    if (blocks_.size() > first) centres_.push_back({place, static_cast<std::uint32_t>(blocks_.size())});
+  }
+
+  /// All pairs; `squares` is scratch of the caller's thread.
+  template <class Kernel, bool transport>
+  void sum(const Numbers& numbers, PairBlocks<D, Numbers>& blocks, Column<Real>& squares) const {
+    std::size_t base = 0;
+    for (std::size_t first = 0; first < centres_.size();) {
+      std::size_t last = first + 1;
+      while (last < centres_.size() && centres_[last].end - base <= full) ++last;
+      const std::span chunk = std::span(centres_).subspan(first, last - first);
+      const std::size_t room = (chunk.back().end - base + detail::roots_ahead) * lane_count;
+      if (squares.size() < room) squares.resize(room);
+      measure(numbers, blocks.data(), chunk, base, squares.data());
+      sum_blocks<Kernel, transport, false, D>(
+          numbers, blocks.data(),
+          [&](auto&&... calls) __attribute__((always_inline)) {
+            detail::for_each_block<RealLanes>(
+                chunk, base, blocks_.data(), [&](std::size_t n) __attribute__((always_inline)) {
+                  return squares.data() + (n - base) * lane_count;
+                },
+                calls...);
+          },
+          [&](std::uint32_t place) { return blocks.centre(place); }, [](std::uint32_t) { return UnitFactor{}; },
+          [&](std::uint32_t place, const auto& sums) { blocks.add(place, sums); });
+      base = chunk.back().end;
+      first = last;
+    }
+  }
+
+  std::size_t bytes() const { return centres_.capacity() * sizeof(Centre) + blocks_.capacity() * sizeof(std::uint32_t); }
+  std::size_t block_count() const { return blocks_.size(); }
+
+ private:
+  static constexpr std::size_t full = 512 / lane_count;  // blocks: their distances stay in the nearest cache
+  struct Centre {
+    std::uint32_t particle, end;  // its place, and where its blocks end
+  };
+
+  /// Squared distances of the blocks of some centres, at least 1 in lanes that are no partners.
+  void measure(const Numbers& numbers, const PairBlock<D, Numbers>* blocks, std::span<const Centre> centres,
+               std::size_t base, Real* squares) const {
+    std::size_t n = base;
+    for (const Centre& centre : centres) {
+      const std::uint32_t own = centre.particle / lane_count, lane = centre.particle % lane_count;
+      Vec<D, typename Numbers::Place> x;
+      for (int axis = 0; axis < D; ++axis) x[axis] = blocks[own].x[axis][lane];
+      const std::size_t first = n;
+      for (; n < centre.end; ++n) {
+        const Vec<D, RealLanes> r = detail::separation_of_block<false>(numbers, blocks[blocks_[n]], x);
+        dot(r, r).copy_to(squares + (n - base) * lane_count, std::experimental::vector_aligned);
+      }
+      if (blocks_[first] != own) continue;
+      Real* const of_own = squares + (first - base) * lane_count;
+      const RealLanes beside = RealLanes(static_cast<Real>(lane + 1)) - lane_numbers<RealLanes>();
+      larger(RealLanes(of_own, std::experimental::vector_aligned), beside)
+          .copy_to(of_own, std::experimental::vector_aligned);
+    }
+  }
+
+  std::vector<Centre> centres_;
+  Column<std::uint32_t> blocks_;
+};
+
+}  // namespace mappm

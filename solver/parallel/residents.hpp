@@ -1,0 +1,81 @@
+// The PPs on a process that keep their places in memory over some steps, a stay: with them the lists of pairs stay, and
+// the ghosts, which are brought up to date in place. What a process owns follows in each step from positions alone, as
+// ever; so every process ends its stay by itself, at any step, and needs nobody's leave.
+//
+// At the start of a stay all PPs within rcut + skin of the region are here, and all pairs nearer than that are listed.
+// Nothing is missed while no PP has moved farther than skin / 2 since, for only what was here can come within rcut of
+// what lies in the region. A stay ends when
+//   - the largest displacements of the steps add up to more than skin / 2;
+//   - a PP that was not here comes within rcut + skin / 2 of the region, which it cannot do otherwise;
+//   - one that was here, and nearer than that, is sent no more: it has left all at once.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "parallel/message.hpp"
+#include "particles/model.hpp"
+#include "particles/state.hpp"
+
+namespace mappm {
+
+/// In rcut. More of it makes stays longer and lists wider (measured: bench/pair_census.cpp).
+inline constexpr double skin = 0.1;
+
+/// `region` widened by a length (rcut) on every side, to whole quanta.
+template <int D>
+Region<D> widened(const Model<D>& model, Region<D> region, double margin);
+
+template <int D>
+class Residents {
+ public:
+  Residents(const Model<D>& model, const Region<D>& region);
+
+  bool staying() const { return staying_; }
+  /// False where the own PPs have moved so far that the stay must end now.
+  bool lasts() const { return staying_ && travelled_ + farthest_ <= 0.5 * skin; }
+  /// All that can come to lie in the region during a stay.
+  const Region<D>& may_own() const { return may_own_; }
+
+  /// Starts a stay. `fluid`: all PPs here, in the order that they will keep.
+  void settle(const FluidParticles<D>& fluid);
+  /// The region's own PPs that others may need: calls visit(i), as long as the stay lasts.
+  template <class Visit>
+  void for_each_sent(Visit&& visit) const {
+    for (const std::uint32_t i : sent_) visit(i);
+    for (std::size_t n = 0; n < near_; ++n)
+      if (owned_[n] != 0) visit(places_[n]);
+  }
+  /// PPs that were outside the region at the start of the stay and may lie in it now.
+  std::span<const std::uint32_t> near_outside() const { return near_outside_; }
+  /// Largest displacement of the own PPs in the step made now, rcut.
+  void moved(double farthest) { farthest_ = farthest; }
+
+  /// In a stay that lasts: brings ghosts up to date from messages (halo.hpp), whose readers then stand behind their PPs.
+  /// False where the stay ends by what they say: some ghosts may be new and others old, and `leave` is due.
+  bool refresh(FluidParticles<D>& fluid, std::span<BufferReader> readers);
+  /// Ends a stay: only what this process owned in the last step remains in `fluid`.
+  void leave(FluidParticles<D>& fluid);
+
+ private:
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+  std::uint32_t* slot_of(std::uint64_t id);
+  std::uint32_t* next(std::uint32_t* slot);
+  bool refresh(FluidParticles<D>& fluid, BufferReader& reader);
+
+  const Model<D>& model_;
+  Region<D> region_, may_own_, deep_, noticed_, sending_;
+  bool staying_ = false;
+  double travelled_ = 0.0, farthest_ = 0.0;  // since the start of the stay at most, and in the last step; rcut
+  std::vector<std::uint32_t> sent_;          // owned throughout
+  // Those that others own, or may come to own: first, `near_` of them, the ones near the border of the region.
+  std::vector<std::uint32_t> places_;
+  std::size_t near_ = 0;
+  std::vector<std::uint32_t> near_outside_;
+  std::vector<std::uint8_t> owned_;        // of the near ones, in this step
+  std::vector<std::uint8_t> up_to_date_;   // of all
+  std::vector<std::uint32_t> table_;       // hashed by id: indices into places_
+};
+
+}  // namespace mappm
