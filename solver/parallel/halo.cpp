@@ -84,8 +84,10 @@ void Halo<D>::pack_fluid(FluidParticles<D>& fluid, const Residents<D>& residents
     Vec<D, double> x;
     for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];
     if (interior_.contains(x)) return;
-    x = in_frame(x);
-    for (int axis = 0; axis < D; ++axis) fluid.x(axis)[i] = x[axis];
+    if (!residents.staying()) {  // those that stay are in it
+      x = in_frame(x);
+      for (int axis = 0; axis < D; ++axis) fluid.x(axis)[i] = x[axis];
+    }
     for (std::size_t n = 0; n < images_.size(); ++n)
       if (image_ghost_reach_[n].contains(x)) selected_[n].push_back(static_cast<std::uint32_t>(i));
   };
