@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "parallel/solid_message.hpp"
@@ -76,41 +77,39 @@ bool Halo<D>::exchange(State<D>& state, Residents<D>& residents, std::vector<Sol
 }
 
 /// Message to each partner: number of PPs, then their ids, then field by field. PPs near the border of the region, or
-/// beyond it, are moved to its frame.
+/// beyond it, are moved to its frame, where those that stay are already.
 template <int D>
 void Halo<D>::pack_fluid(FluidParticles<D>& fluid, const Residents<D>& residents) {
   for (auto& chosen : selected_) chosen.clear();
-  const auto select = [&](std::size_t i) {
-    Vec<D, double> x;
-    for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];
-    if (interior_.contains(x)) return;
-    if (!residents.staying()) {  // those that stay are in it
+  if (residents.staying()) {
+    for (std::size_t n = 0; n < images_.size(); ++n) residents.select(fluid, n, selected_[n]);
+  } else {
+    for (std::size_t i = 0; i < fluid.size(); ++i) {
+      Vec<D, double> x;
+      for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];
+      if (interior_.contains(x)) continue;
       x = in_frame(x);
       for (int axis = 0; axis < D; ++axis) fluid.x(axis)[i] = x[axis];
+      for (std::size_t n = 0; n < images_.size(); ++n)
+        if (image_ghost_reach_[n].contains(x)) selected_[n].push_back(static_cast<std::uint32_t>(i));
     }
-    for (std::size_t n = 0; n < images_.size(); ++n)
-      if (image_ghost_reach_[n].contains(x)) selected_[n].push_back(static_cast<std::uint32_t>(i));
-  };
-  if (residents.staying())
-    residents.for_each_sent(select);
-  else
-    for (std::size_t i = 0; i < fluid.size(); ++i) select(i);
+  }
   for (std::size_t partner = 0; partner < partners_.size(); ++partner) {
     Buffer& buffer = out_[partner];
     std::uint64_t count = 0;
     for (std::size_t n = 0; n < images_.size(); ++n)
       if (images_[n].partner == static_cast<int>(partner)) count += selected_[n].size();
-    buffer.reserve(sizeof count * (1 + count * (1 + FluidParticles<D>::field_count)));
-    put(buffer, count);
+    std::byte* to = extend(buffer, sizeof count * (1 + count * (1 + FluidParticles<D>::field_count)));
+    write(to, count);
     for (std::size_t n = 0; n < images_.size(); ++n)
       if (images_[n].partner == static_cast<int>(partner))
-        for (const std::uint32_t i : selected_[n]) put(buffer, fluid.id[i]);
+        for (const std::uint32_t i : selected_[n]) write(to, fluid.id[i]);
     for (int f = 0; f < FluidParticles<D>::field_count; ++f)
       for (std::size_t n = 0; n < images_.size(); ++n) {
         if (images_[n].partner != static_cast<int>(partner)) continue;
         const double shift = f < D ? images_[n].shift[f] : 0.0;
         const auto& values = fluid.field[static_cast<std::size_t>(f)];
-        for (const std::uint32_t i : selected_[n]) put(buffer, values[i] + shift);
+        for (const std::uint32_t i : selected_[n]) write(to, values[i] + shift);
       }
   }
 }
@@ -120,9 +119,9 @@ void Halo<D>::unpack_fluid(BufferReader& reader, FluidParticles<D>& fluid) {
   const auto count = reader.get<std::uint64_t>();
   const std::size_t first = fluid.size();
   fluid.resize(first + count);
-  for (std::size_t i = first; i < fluid.size(); ++i) fluid.id[i] = reader.get<std::uint64_t>();
-  for (auto& values : fluid.field)
-    for (std::size_t i = first; i < fluid.size(); ++i) values[i] = reader.get<double>();
+  if (count == 0) return;
+  std::memcpy(&fluid.id[first], reader.skip<std::uint64_t>(count), count * sizeof(std::uint64_t));
+  for (auto& values : fluid.field) std::memcpy(&values[first], reader.skip<double>(count), count * sizeof(double));
 }
 
 /// Behind the PPs, for each image: number of solids, then these.

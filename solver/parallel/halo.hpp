@@ -36,6 +36,8 @@ class Halo {
   const Region<D>& region() const { return region_; }
   /// The region and its margin of rcut: where FPs matter.
   const Region<D>& reach() const { return reach_; }
+  /// Where PPs lie that others need: a region for each image of theirs.
+  const std::vector<Region<D>>& needed_by_others() const { return image_ghost_reach_; }
 
   /// On entry `state` holds what this process owned before the particles moved, at their new positions, and the PPs of a
   /// stay. On return it holds its particles and, as far out as rcut + skin, ghosts, all in its frame, and its solids;

@@ -27,6 +27,21 @@ void put(Buffer& buffer, const std::vector<T>& values) {
   std::memcpy(buffer.data() + at, values.data(), values.size() * sizeof(T));
 }
 
+/// Room for so many more bytes at the end of a buffer; returns where it begins.
+inline std::byte* extend(Buffer& buffer, std::size_t bytes) {
+  const std::size_t at = buffer.size();
+  buffer.resize(at + bytes);
+  return buffer.data() + at;
+}
+
+/// Writes a value at an address of bytes, and moves that behind it.
+template <class T>
+void write(std::byte*& to, const T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  std::memcpy(to, &value, sizeof(T));
+  to += sizeof(T);
+}
+
 /// Reads back, in the same order, what `put` wrote.
 class BufferReader {
  public:

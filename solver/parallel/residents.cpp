@@ -31,57 +31,73 @@ Vec<D, double> place_of(const FluidParticles<D>& fluid, std::size_t i) {
 }  // namespace
 
 template <int D>
-Residents<D>::Residents(const Model<D>& model, const Region<D>& region)
+Residents<D>::Residents(const Model<D>& model, const Region<D>& region, const std::vector<Region<D>>& others)
     : model_(model),
       region_(region),
       may_own_(widened(model, region, 0.5 * skin)),
       deep_(widened(model, region, -0.5 * skin)),
       noticed_(widened(model, region, 1.0 + 0.5 * skin)),
-      sending_(widened(model, region, -1.0 - 1.5 * skin)) {}
+      needless_(widened(model, region, -1.0 - 1.5 * skin)),
+      others_(others),
+      candidates_(others.size()) {
+  for (const Region<D>& other : others) may_enter_.push_back(widened(model, other, 0.5 * skin));
+}
 
 template <int D>
 void Residents<D>::settle(const FluidParticles<D>& fluid) {
-  sent_.clear();
+  for (auto& candidates : candidates_) candidates.clear();
   places_.clear();
   near_outside_.clear();
   owned_.clear();
   std::vector<std::uint32_t> ghosts;
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     const Vec<D, double> x = place_of(fluid, i);
-    if (sending_.contains(x)) continue;
+    if (needless_.contains(x)) continue;
     const auto place = static_cast<std::uint32_t>(i);
-    if (deep_.contains(x)) {
-      sent_.push_back(place);
-    } else if (may_own_.contains(x)) {
+    if (!may_own_.contains(x)) {
+      ghosts.push_back(place);
+      continue;
+    }
+    std::uint32_t near = none;
+    if (!deep_.contains(x)) {
+      near = static_cast<std::uint32_t>(places_.size());
       const bool owned = region_.contains(x);
       places_.push_back(place);
       owned_.push_back(owned ? 1 : 0);
       if (!owned) near_outside_.push_back(place);
-    } else {
-      ghosts.push_back(place);
     }
+    for (std::size_t n = 0; n < candidates_.size(); ++n)
+      if (may_enter_[n].contains(x)) candidates_[n].push_back({place, near});
   }
   near_ = places_.size();
   places_.insert(places_.end(), ghosts.begin(), ghosts.end());
   up_to_date_.assign(places_.size(), 0);
   table_.assign(std::bit_ceil(2 * places_.size() + 1), none);
   for (std::uint32_t n = 0; n < places_.size(); ++n) {
-    std::uint32_t* slot = slot_of(fluid.id[places_[n]]);
+    const std::uint32_t* slot = slot_of(fluid.id[places_[n]]);
     while (*slot != none) slot = next(slot);
-    *slot = n;
+    table_[static_cast<std::size_t>(slot - table_.data())] = n;
   }
+  for (auto& sequence : sequences_) sequence.clear();
+  stood_.assign(places_.size(), 0);
   travelled_ = farthest_ = 0.0;
   staying_ = true;
 }
 
+template <int D>
+void Residents<D>::select(const FluidParticles<D>& fluid, std::size_t n, std::vector<std::uint32_t>& chosen) const {
+  for (const auto& [place, near] : candidates_[n])
+    if ((near == none || owned_[near] != 0) && others_[n].contains(place_of(fluid, place))) chosen.push_back(place);
+}
+
 /// Where the search for an id begins; several images of one PP follow each other.
 template <int D>
-std::uint32_t* Residents<D>::slot_of(std::uint64_t id) {
+const std::uint32_t* Residents<D>::slot_of(std::uint64_t id) const {
   return &table_[static_cast<std::size_t>(id * 0x9e3779b97f4a7c15u >> 32) & (table_.size() - 1)];
 }
 
 template <int D>
-std::uint32_t* Residents<D>::next(std::uint32_t* slot) {
+const std::uint32_t* Residents<D>::next(const std::uint32_t* slot) const {
   return ++slot == table_.data() + table_.size() ? table_.data() : slot;
 }
 
@@ -89,8 +105,9 @@ template <int D>
 bool Residents<D>::refresh(FluidParticles<D>& fluid, std::span<BufferReader> readers) {
   std::copy(owned_.begin(), owned_.end(), up_to_date_.begin());
   std::fill(up_to_date_.begin() + static_cast<std::ptrdiff_t>(near_), up_to_date_.end(), 0);
-  for (BufferReader& reader : readers)
-    if (!refresh(fluid, reader)) return false;
+  sequences_.resize(readers.size());
+  for (std::size_t n = 0; n < readers.size(); ++n)
+    if (!refresh(fluid, readers[n], sequences_[n])) return false;
   if (!lasts()) return false;
   travelled_ += farthest_;
   farthest_ = 0.0;
@@ -101,7 +118,7 @@ bool Residents<D>::refresh(FluidParticles<D>& fluid, std::span<BufferReader> rea
 }
 
 template <int D>
-bool Residents<D>::refresh(FluidParticles<D>& fluid, BufferReader& reader) {
+bool Residents<D>::refresh(FluidParticles<D>& fluid, BufferReader& reader, std::vector<std::uint32_t>& sequence) {
   const auto count = reader.get<std::uint64_t>();
   const std::byte* const ids = reader.skip<std::uint64_t>(count);
   const std::byte* const fields = reader.skip<double>(count * FluidParticles<D>::field_count);
@@ -110,28 +127,39 @@ bool Residents<D>::refresh(FluidParticles<D>& fluid, BufferReader& reader) {
     std::memcpy(&result, fields + (field * count + k) * sizeof result, sizeof result);
     return result;
   };
+  sequence_.assign(count, none);
+  std::size_t expected = 0;  // in `sequence`
   for (std::size_t k = 0; k < count; ++k) {
     std::uint64_t id;
     std::memcpy(&id, ids + k * sizeof id, sizeof id);
     Vec<D, double> x;
     for (int axis = 0; axis < D; ++axis) x[axis] = value(static_cast<std::size_t>(axis), k);
-    std::uint32_t* slot = slot_of(id);
     double square = 0.0;
-    for (; *slot != none; slot = next(slot)) {
-      const std::uint32_t place = places_[*slot];
-      if (fluid.id[place] != id) continue;
-      const Vec<D, double> moved = separation(model_.pair, x - place_of(fluid, place));
+    const auto is_that = [&](std::uint32_t n) {
+      if (fluid.id[places_[n]] != id) return false;
+      const Vec<D, double> moved = separation(model_.pair, x - place_of(fluid, places_[n]));
       square = dot(moved, moved);
-      if (square <= skin * skin) break;  // another image is a box away
-    }
-    if (*slot == none) {
-      if (noticed_.contains(x)) return false;
-      continue;
+      return square <= skin * skin;  // another image is a box away
+    };
+    std::uint32_t found = expected < sequence.size() ? sequence[expected] : none;
+    if (found == none || !is_that(found)) {
+      const std::uint32_t* slot = slot_of(id);
+      while (*slot != none && !is_that(*slot)) slot = next(slot);
+      found = *slot;
+      if (found == none) {
+        if (noticed_.contains(x)) return false;
+        continue;
+      }
+      expected = stood_[found];
     }
     farthest_ = std::max(farthest_, std::sqrt(square));
-    for (std::size_t f = 0; f < fluid.field.size(); ++f) fluid.field[f][places_[*slot]] = value(f, k);
-    up_to_date_[*slot] = 1;
+    for (std::size_t f = 0; f < fluid.field.size(); ++f) fluid.field[f][places_[found]] = value(f, k);
+    up_to_date_[found] = 1;
+    sequence_[k] = found;
+    stood_[found] = static_cast<std::uint32_t>(k);
+    ++expected;
   }
+  sequence.swap(sequence_);
   return true;
 }
 

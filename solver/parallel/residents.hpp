@@ -30,7 +30,8 @@ Region<D> widened(const Model<D>& model, Region<D> region, double margin);
 template <int D>
 class Residents {
  public:
-  Residents(const Model<D>& model, const Region<D>& region);
+  /// `others`: where the PPs lie that other processes need, one region an image of theirs.
+  Residents(const Model<D>& model, const Region<D>& region, const std::vector<Region<D>>& others);
 
   bool staying() const { return staying_; }
   /// False where the own PPs have moved so far that the stay must end now.
@@ -40,13 +41,8 @@ class Residents {
 
   /// Starts a stay. `fluid`: all PPs here, in the order that they will keep.
   void settle(const FluidParticles<D>& fluid);
-  /// The region's own PPs that others may need: calls visit(i), as long as the stay lasts.
-  template <class Visit>
-  void for_each_sent(Visit&& visit) const {
-    for (const std::uint32_t i : sent_) visit(i);
-    for (std::size_t n = 0; n < near_; ++n)
-      if (owned_[n] != 0) visit(places_[n]);
-  }
+  /// In a stay that lasts: adds those of this process' own PPs that lie in region n of `others` now.
+  void select(const FluidParticles<D>& fluid, std::size_t n, std::vector<std::uint32_t>& chosen) const;
   /// PPs that were outside the region at the start of the stay and may lie in it now.
   std::span<const std::uint32_t> near_outside() const { return near_outside_; }
   /// Largest displacement of the own PPs in the step made now, rcut.
@@ -60,15 +56,19 @@ class Residents {
 
  private:
   static constexpr std::uint32_t none = ~std::uint32_t{0};
-  std::uint32_t* slot_of(std::uint64_t id);
-  std::uint32_t* next(std::uint32_t* slot);
-  bool refresh(FluidParticles<D>& fluid, BufferReader& reader);
+  const std::uint32_t* slot_of(std::uint64_t id) const;
+  const std::uint32_t* next(const std::uint32_t* slot) const;
+  bool refresh(FluidParticles<D>& fluid, BufferReader& reader, std::vector<std::uint32_t>& sequence);
 
   const Model<D>& model_;
-  Region<D> region_, may_own_, deep_, noticed_, sending_;
+  Region<D> region_, may_own_, deep_, noticed_, needless_;
+  std::vector<Region<D>> others_, may_enter_;
   bool staying_ = false;
   double travelled_ = 0.0, farthest_ = 0.0;  // since the start of the stay at most, and in the last step; rcut
-  std::vector<std::uint32_t> sent_;          // owned throughout
+  struct Candidate {
+    std::uint32_t place, near;  // `none` where it is owned throughout
+  };
+  std::vector<std::vector<Candidate>> candidates_;  // of those in `may_enter_`
   // Those that others own, or may come to own: first, `near_` of them, the ones near the border of the region.
   std::vector<std::uint32_t> places_;
   std::size_t near_ = 0;
@@ -76,6 +76,10 @@ class Residents {
   std::vector<std::uint8_t> owned_;        // of the near ones, in this step
   std::vector<std::uint8_t> up_to_date_;   // of all
   std::vector<std::uint32_t> table_;       // hashed by id: indices into places_
+  // A message names much the same PPs as the one before, in the same order: indices into places_ by message, or `none`,
+  // and where each of these stood in its message.
+  std::vector<std::vector<std::uint32_t>> sequences_;
+  std::vector<std::uint32_t> stood_, sequence_;
 };
 
 }  // namespace mappm
