@@ -108,18 +108,24 @@ void ParallelEngine<D>::step() {
   watch_.start();
   if (traced_particle_.has_value() || faces_due()) state();  // what explains the pairs wants them in their cells
   const bool stay = halo_->exchange(state_, *residents_, copies_, watch_);
+  const bool single_step = !stay && !residents_->pays();
   place_solids();
   watch_.end(Phase::solids);
   if (model_.terms.fluid) {
     if (!stay) {
       grid_.sort(state_.fluid);
       find_rows();
-      residents_->settle(state_.fluid);
+      residents_->settle(state_.fluid, single_step);
       watch_.end(Phase::sort);
-      std::visit([&](auto& pass) { pass.list(state_.fluid, grid_, residents_->may_own(), 1.0 + skin); }, pass_);
-      watch_.end(Phase::lists);
     }
-    std::visit([&](auto& pass) { pass.sum(state_.fluid, grid_); }, pass_);
+    if (single_step) {
+      std::visit([&](auto& pass) { pass.sum_once(state_.fluid, grid_); }, pass_);
+    } else {
+      if (!stay)
+        std::visit([&](auto& pass) { pass.list(state_.fluid, grid_, residents_->may_own(), 1.0 + skin); }, pass_);
+      watch_.end(Phase::lists);
+      std::visit([&](auto& pass) { pass.sum(state_.fluid, grid_); }, pass_);
+    }
     watch_.end(Phase::pairs);
     std::visit([&](auto& pass) { pass.add_frozen(grid_, solids_.frozen, frozen_sums_); }, pass_);
     watch_.end(Phase::frozen_pairs);

@@ -74,11 +74,33 @@ std::vector<std::vector<std::uint32_t>> frozen_by_plane(const CellGrid<D>& grid,
 }
 
 template <int D, class Numbers>
-void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region,
-                                 double reach) {
+void FluidPass<D, Numbers>::prepare(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
   blocks_.fill(model_, numbers_, fluid, grid);
   half_rows_ = row_offsets(grid, true);
   all_rows_ = row_offsets(grid, false);
+}
+
+template <int D, class Numbers>
+void FluidPass<D, Numbers>::sum_once(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
+  prepare(fluid, grid);
+  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
+    for_each_band(grid, [&](int first, int last, Search& search, std::size_t) {
+      for_each_row(grid, first, last, [&](const Vec<D, int>& row) {
+        for_each_list(fluid, grid, row, false, search, [&](Lists& lists) {
+          sum_lists<Kernel, transport, false>(
+              numbers_, blocks_.data(), lists, [&](std::uint32_t i) { return blocks_.centre(i); },
+              [](std::uint32_t) { return UnitFactor{}; },
+              [&](std::uint32_t i, const Sums& sums) { blocks_.add(i, sums); });
+        });
+      });
+    });
+  });
+}
+
+template <int D, class Numbers>
+void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region,
+                                 double reach) {
+  prepare(fluid, grid);
   const auto square = static_cast<typename Numbers::Real>(reach * reach);
   const std::vector<std::uint8_t> inside = places_in(fluid, grid, region);  // of each place
   const auto reaches_inside = [&](std::uint32_t block) {

@@ -33,7 +33,9 @@ class FluidPass {
   /// After `list`, with the PPs in the same order: sums over all PPs near each PP of the region; sums of others are
   /// partial and meaningless.
   void sum(FluidParticles<D>& fluid, const CellGrid<D>& grid);
-  /// After `sum`: adds the pairs of PPs and FPs. `frozen` are all FPs in reach; `frozen_sums[k]` becomes the sum over
+  /// Both in one, for PPs that will not keep their order.
+  void sum_once(FluidParticles<D>& fluid, const CellGrid<D>& grid);
+  /// After a sum: adds the pairs of PPs and FPs. `frozen` are all FPs in reach; `frozen_sums[k]` becomes the sum over
   /// PPs where FP k lies in the region.
   void add_frozen(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
                   std::vector<NeighbourSums<D>>& frozen_sums);
@@ -50,13 +52,13 @@ class FluidPass {
   }
   NeighbourSums<D> sums(std::uint32_t i) const { return numbers_.sums(blocks_.sums(blocks_.place(i))); }
 
-  /// After all three in one step and with their arguments: what each partner gave to the PP with this id that lies in
+  /// After a sum and `add_frozen` in the step in which `fluid` was ordered, with their arguments: what each partner gave to the PP with this id that lies in
   /// the region of the grid, every pair of the pass taken alone; none where there is no such PP. For an FP `id` is the
   /// index of its solid in the step.
   std::optional<std::vector<PartnerTrace<D>>> trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
                                                     const std::vector<FrozenInStep<D>>& frozen, std::uint64_t particle);
 
-  /// After `list` and with its arguments: calls visit(lists) with the candidates it meets, lists by lists.
+  /// After `list` and with its arguments: calls visit(lists) with the candidates that it meets, lists by lists.
   void for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const std::function<void(Lists&)>& visit);
 
   /// Blocks in the lists, and memory of blocks and lists, bytes.
@@ -88,6 +90,7 @@ class FluidPass {
   };
   template <class Kernel, bool transport, bool lanes_first, class Beta>
   PairSums sums_of_pair(const Centre& centre, std::uint32_t place, const Beta& beta) const;
+  void prepare(FluidParticles<D>& fluid, const CellGrid<D>& grid);
   std::vector<std::uint8_t> places_in(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
                                       const Region<D>& region) const;
   int band_height(const CellGrid<D>& grid) const;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 
 #include "physics/fluid_pair.hpp"
 
@@ -44,7 +45,7 @@ Residents<D>::Residents(const Model<D>& model, const Region<D>& region, const st
 }
 
 template <int D>
-void Residents<D>::settle(const FluidParticles<D>& fluid) {
+void Residents<D>::settle(const FluidParticles<D>& fluid, bool single_step) {
   for (auto& candidates : candidates_) candidates.clear();
   places_.clear();
   near_outside_.clear();
@@ -66,11 +67,15 @@ void Residents<D>::settle(const FluidParticles<D>& fluid) {
       owned_.push_back(owned ? 1 : 0);
       if (!owned) near_outside_.push_back(place);
     }
-    for (std::size_t n = 0; n < candidates_.size(); ++n)
+    for (std::size_t n = 0; n < candidates_.size() && !single_step; ++n)
       if (may_enter_[n].contains(x)) candidates_[n].push_back({place, near});
   }
   near_ = places_.size();
   places_.insert(places_.end(), ghosts.begin(), ghosts.end());
+  travelled_ = single_step ? skin : 0.0;
+  farthest_ = 0.0;
+  staying_ = true;
+  if (single_step) return;
   up_to_date_.assign(places_.size(), 0);
   table_.assign(std::bit_ceil(2 * places_.size() + 1), none);
   for (std::uint32_t n = 0; n < places_.size(); ++n) {
@@ -80,8 +85,6 @@ void Residents<D>::settle(const FluidParticles<D>& fluid) {
   }
   for (auto& sequence : sequences_) sequence.clear();
   stood_.assign(places_.size(), 0);
-  travelled_ = farthest_ = 0.0;
-  staying_ = true;
 }
 
 template <int D>
@@ -167,10 +170,12 @@ template <int D>
 void Residents<D>::leave(FluidParticles<D>& fluid) {
   if (!staying_) return;
   staying_ = false;
-  std::vector<std::uint32_t> gone;  // in rising order
-  for (std::size_t n = 0; n < places_.size(); ++n)
-    if (n >= near_ || owned_[n] == 0) gone.push_back(places_[n]);
-  std::sort(gone.begin(), gone.end());
+  std::vector<std::uint32_t> near_gone, gone;  // in rising order
+  for (std::size_t n = 0; n < near_; ++n)
+    if (owned_[n] == 0) near_gone.push_back(places_[n]);
+  gone.reserve(places_.size());
+  std::merge(near_gone.begin(), near_gone.end(), places_.begin() + static_cast<std::ptrdiff_t>(near_), places_.end(),
+             std::back_inserter(gone));
   std::size_t kept = 0, from = 0;
   const auto keep_until = [&](std::size_t end) {
     const auto move = [&](auto& values) {

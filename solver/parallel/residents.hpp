@@ -36,17 +36,19 @@ class Residents {
   bool staying() const { return staying_; }
   /// False where the own PPs have moved so far that the stay must end now.
   bool lasts() const { return staying_ && travelled_ + farthest_ <= 0.5 * skin; }
+  /// Whether a stay that begins now will pay for lists that are kept: whether it lasts for three steps like the last.
+  bool pays() const { return 2.0 * last_farthest_ <= 0.5 * skin; }
   /// All that can come to lie in the region during a stay.
   const Region<D>& may_own() const { return may_own_; }
 
-  /// Starts a stay. `fluid`: all PPs here, in the order that they will keep.
-  void settle(const FluidParticles<D>& fluid);
+  /// Starts a stay, which may be one of a single step. `fluid`: all PPs here, in the order that they will keep.
+  void settle(const FluidParticles<D>& fluid, bool single_step = false);
   /// In a stay that lasts: adds those of this process' own PPs that lie in region n of `others` now.
   void select(const FluidParticles<D>& fluid, std::size_t n, std::vector<std::uint32_t>& chosen) const;
   /// PPs that were outside the region at the start of the stay and may lie in it now.
   std::span<const std::uint32_t> near_outside() const { return near_outside_; }
   /// Largest displacement of the own PPs in the step made now, rcut.
-  void moved(double farthest) { farthest_ = farthest; }
+  void moved(double farthest) { farthest_ = last_farthest_ = farthest; }
 
   /// In a stay that lasts: brings ghosts up to date from messages (halo.hpp), whose readers then stand behind their PPs.
   /// False where the stay ends by what they say: some ghosts may be new and others old, and `leave` is due.
@@ -64,7 +66,8 @@ class Residents {
   Region<D> region_, may_own_, deep_, noticed_, needless_;
   std::vector<Region<D>> others_, may_enter_;
   bool staying_ = false;
-  double travelled_ = 0.0, farthest_ = 0.0;  // since the start of the stay at most, and in the last step; rcut
+  // Displacements, rcut: since the start of the stay at most, in the last step, and in that of the own PPs alone.
+  double travelled_ = 0.0, farthest_ = 0.0, last_farthest_ = 0.0;
   struct Candidate {
     std::uint32_t place, near;  // `none` where it is owned throughout
   };
