@@ -75,7 +75,7 @@ class Parts {
 
  private:
   void lay_blocks() { blocks_.fill(setup_.fluid.model, numbers_, setup_.particles, setup_.grid); }
-  void sum() { pass_.sum(setup_.particles, setup_.grid); }
+  void sum() { pass_.sum_once(setup_.particles, setup_.grid); }
   void measure_distances(Lists& lists) { lists.template measure<false>(numbers_, blocks_.data()); }
 
   SortedFluid<D> setup_;

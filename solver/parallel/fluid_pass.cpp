@@ -3,7 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <iterator>
+#include <limits>
 
 #ifdef MAPPM_FLOATING_SUMS
 #include "parallel/floating_pairs.hpp"
@@ -107,21 +107,22 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
     const auto first = inside.begin() + static_cast<std::ptrdiff_t>(block) * lane_count;
     return std::find(first, first + lane_count, 1) != first + lane_count;
   };
+  const std::vector<std::uint8_t> wide = wide_blocks(fluid, grid);
   const int height = band_height(grid);
   kept_.resize(static_cast<std::size_t>((grid.count(D - 1) + height - 1) / height));
   for_each_band(grid, [&](int first, int last, Search& search, std::size_t band) {
     KeptLists<D, Numbers>& kept = kept_[band];
     kept.clear();
-    std::vector<std::uint32_t> chosen;
     for_each_row(grid, first, last, [&](const Vec<D, int>& row) {
       for_each_list(fluid, grid, row, true, search, [&](Lists& lists) {
         lists.template measure<false>(numbers_, blocks_.data(), square);
-        lists.for_each_centre([&](std::uint32_t place, std::span<const std::uint32_t> blocks) {
-          if (inside[place]) return kept.add(place, blocks);
-          chosen.clear();
-          std::ranges::copy_if(blocks, std::back_inserter(chosen), reaches_inside);
-          kept.add(place, chosen);
-        });
+        std::uint32_t centre = 0;
+        lists.for_each_kept([&](std::uint32_t place) { centre = place; },
+                            [&](std::uint32_t block, std::uint8_t lanes) {
+                              if (inside[centre] != 0 || reaches_inside(block))
+                                kept.add(block, lanes, !wide.empty() && wide[block] != 0);
+                            },
+                            [&] { kept.end(centre); });
       });
     });
   });
@@ -149,6 +150,23 @@ std::size_t FluidPass<D, Numbers>::bytes() const {
   std::size_t bytes = blocks_.bytes();
   for (const auto& kept : kept_) bytes += kept.bytes();
   return bytes;
+}
+
+/// Whether each block is so wide that its lanes must be named; empty where none can be.
+template <int D, class Numbers>
+std::vector<std::uint8_t> FluidPass<D, Numbers>::wide_blocks(const FluidParticles<D>& fluid,
+                                                             const CellGrid<D>& grid) const {
+  if (Numbers::largest_extent == std::numeric_limits<double>::infinity()) return {};
+  std::vector<std::uint8_t> wide(blocks_.place_count() / lane_count, 0);
+  for (int plane = 0; plane < grid.count(D - 1); ++plane)
+    for (std::uint32_t end = grid.plane_start(plane + 1), i = grid.plane_start(plane); i < end; i += lane_count)
+      for (int axis = 0; axis < D; ++axis) {
+        const auto first = fluid.x(axis).begin() + i;
+        const auto [least, most] = std::minmax_element(first, first + std::min<std::uint32_t>(lane_count, end - i));
+        if ((*most - *least) * model_.pair.length[axis] > Numbers::largest_extent)
+          wide[(i + blocks_.gap(plane)) / lane_count] = 1;
+      }
+  return wide;
 }
 
 /// Whether each place holds a PP in `region`.

@@ -91,6 +91,7 @@ class FluidPass {
   template <class Kernel, bool transport, bool lanes_first, class Beta>
   PairSums sums_of_pair(const Centre& centre, std::uint32_t place, const Beta& beta) const;
   void prepare(FluidParticles<D>& fluid, const CellGrid<D>& grid);
+  std::vector<std::uint8_t> wide_blocks(const FluidParticles<D>& fluid, const CellGrid<D>& grid) const;
   std::vector<std::uint8_t> places_in(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
                                       const Region<D>& region) const;
   int band_height(const CellGrid<D>& grid) const;

@@ -2,6 +2,7 @@
 // anew.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,8 +11,8 @@
 
 namespace mappm {
 
-/// Of each centre, a place, the blocks that hold partners. All lanes of a block count, but in the centre's own block
-/// only those behind it.
+/// Of each centre, a place, the blocks that hold partners. All lanes of a block count unless some are named; in the
+/// centre's own block only those behind it.
 template <int D, class Numbers>
 class KeptLists {
   using Real = typename Numbers::Real;
@@ -21,27 +22,40 @@ class KeptLists {
   void clear() {
     centres_.clear();
     blocks_.clear();
+    named_.clear();
+    first_ = 0;
   }
 
-  /// Adds the blocks of a centre, in rising order as far as two could be the same.
-  void add(std::uint32_t place, std::span<const std::uint32_t> blocks) {
-    const std::size_t first = blocks_.size();
-    for (const std::uint32_t block : blocks)  // a block on the border of two rows was found in both
-      if (blocks_.size() == first || blocks_.back() != block) blocks_.push_back(block);
-    if (blocks_.size() > first) centres_.push_back({place, static_cast<std::uint32_t>(blocks_.size())});
+  /// Adds a block to the centre that is being built, in rising order as far as two could be the same: a block on the
+  /// border of two rows is found in both. `named`: count only these lanes, one a bit.
+  void add(std::uint32_t block, std::uint8_t lanes, bool named) {
+    const bool again = blocks_.size() > first_ && blocks_.back() == block;
+    if (!again) blocks_.push_back(block);
+    if (!named) return;
+    const auto entry = static_cast<std::uint32_t>(blocks_.size() - 1);
+    if (again)
+      named_.back().lanes |= lanes;
+    else
+      named_.push_back({entry, lanes});
+  }
+  /// Ends the centre that is being built.
+  void end(std::uint32_t place) {
+    if (blocks_.size() > first_) centres_.push_back({place, static_cast<std::uint32_t>(blocks_.size())});
+    first_ = blocks_.size();
   }
 
   /// All pairs; `squares` is scratch of the caller's thread.
   template <class Kernel, bool transport>
   void sum(const Numbers& numbers, PairBlocks<D, Numbers>& blocks, Column<Real>& squares) const {
     std::size_t base = 0;
+    auto named = named_.begin();
     for (std::size_t first = 0; first < centres_.size();) {
       std::size_t last = first + 1;
       while (last < centres_.size() && centres_[last].end - base <= full) ++last;
       const std::span chunk = std::span(centres_).subspan(first, last - first);
       const std::size_t room = (chunk.back().end - base + detail::roots_ahead) * lane_count;
       if (squares.size() < room) squares.resize(room);
-      measure(numbers, blocks.data(), chunk, base, squares.data());
+      measure(numbers, blocks.data(), chunk, base, named, squares.data());
       sum_blocks<Kernel, transport, false, D>(
           numbers, blocks.data(),
           [&](auto&&... calls) __attribute__((always_inline)) {
@@ -66,10 +80,16 @@ class KeptLists {
   struct Centre {
     std::uint32_t particle, end;  // its place, and where its blocks end
   };
+  struct NamedLanes {
+    std::uint32_t entry;  // in blocks_
+    std::uint8_t lanes;
+  };
+  using Named = typename std::vector<NamedLanes>::const_iterator;
 
-  /// Squared distances of the blocks of some centres, at least 1 in lanes that are no partners.
+  /// Squared distances of the blocks of some centres, at least 1 in lanes that are no partners. `named`: the first entry
+  /// of theirs with named lanes.
   void measure(const Numbers& numbers, const PairBlock<D, Numbers>* blocks, std::span<const Centre> centres,
-               std::size_t base, Real* squares) const {
+               std::size_t base, Named& named, Real* squares) const {
     std::size_t n = base;
     for (const Centre& centre : centres) {
       const std::uint32_t own = centre.particle / lane_count, lane = centre.particle % lane_count;
@@ -80,16 +100,22 @@ class KeptLists {
         const Vec<D, RealLanes> r = detail::separation_of_block<false>(numbers, blocks[blocks_[n]], x);
         dot(r, r).copy_to(squares + (n - base) * lane_count, std::experimental::vector_aligned);
       }
-      if (blocks_[first] != own) continue;
-      Real* const of_own = squares + (first - base) * lane_count;
-      const RealLanes beside = RealLanes(static_cast<Real>(lane + 1)) - lane_numbers<RealLanes>();
-      larger(RealLanes(of_own, std::experimental::vector_aligned), beside)
-          .copy_to(of_own, std::experimental::vector_aligned);
+      if (blocks_[first] == own) {
+        Real* const of_own = squares + (first - base) * lane_count;
+        const RealLanes beside = RealLanes(static_cast<Real>(lane + 1)) - lane_numbers<RealLanes>();
+        larger(RealLanes(of_own, std::experimental::vector_aligned), beside)
+            .copy_to(of_own, std::experimental::vector_aligned);
+      }
+      for (; named != named_.end() && named->entry < centre.end; ++named)
+        for (std::uint32_t k = 0; k < lane_count; ++k)
+          if ((named->lanes >> k & 1) == 0) squares[(named->entry - base) * lane_count + k] = Real(1);
     }
   }
 
   std::vector<Centre> centres_;
   Column<std::uint32_t> blocks_;
+  std::vector<NamedLanes> named_;  // in the order of the entries
+  std::size_t first_ = 0;          // block of the centre that is being built
 };
 
 }  // namespace mappm

@@ -1,8 +1,8 @@
 // The loops over pairs of the fast engine: one particle against blocks of others, a lane each.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -195,13 +195,20 @@ class PartnerLists {
         begin, visit, end);
   }
 
-  /// After `measure`: calls visit(particle, blocks) with the blocks of each centre.
-  template <class Visit>
-  void for_each_centre(Visit&& visit) const {
+  /// After `measure`: calls visit(block, lanes) for the blocks of each centre, bit k of `lanes` saying whether lane k is
+  /// a partner, between begin(particle) and end().
+  template <class Begin, class Visit, class End>
+  void for_each_kept(Begin&& begin, Visit&& visit, End&& end) const {
     std::size_t n = 0;
     for (const Centre& centre : centres_) {
-      visit(centre.particle, std::span(block_).subspan(n, centre.end - n));
-      n = centre.end;
+      begin(centre.particle);
+      for (; n < centre.end; ++n) {
+        const std::uint32_t from = from_[n];
+        const auto first = static_cast<int>(std::max(first_[from], Real(0)));
+        const auto last = static_cast<int>(std::min(last_[from], static_cast<Real>(lane_count - 1)));
+        visit(block_[n], static_cast<std::uint8_t>((2u << last) - (1u << first)));
+      }
+      end();
     }
   }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
 #include "base/fixed_point.hpp"
 #include "base/lanes.hpp"
@@ -30,6 +31,8 @@ class DoublePairs {
   using Place = double;      // a position as the lanes hold it
   using Sum = std::int64_t;  // of contributions
   using Rounding = Rounded;  // of each of them
+  /// Extent of some particles beyond which not all of them are told apart from a neighbour of one of them; rcut.
+  static constexpr double largest_extent = std::numeric_limits<double>::infinity();
   using RealLanes = Lanes;
 
   DoublePairs(const PairLaw<D>& law, double) : law_(law) {}
@@ -65,6 +68,7 @@ class SinglePairs {
   using Place = std::int32_t;
   using Sum = std::int32_t;
   using Rounding = Rounded;
+  static constexpr double largest_extent = 4.0;  // half of the least window
   using RealLanes = FloatLanes;
 
   SinglePairs(const PairLaw<D>& law, double rest_density) {

@@ -193,7 +193,7 @@ TEST(ParallelEngine, tells_where_its_time_went) {
     EXPECT_GT(seconds, 0.0) << name;
   }
   EXPECT_EQ(phases,
-            (std::set<std::string>{"exchange", "sort", "pairs", "frozen_pairs", "solids", "copies", "integrate"}));
+            (std::set<std::string>{"exchange", "sort", "lists", "pairs", "frozen_pairs", "solids", "copies", "integrate"}));
 }
 
 }  // namespace

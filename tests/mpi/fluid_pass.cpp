@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "parallel/residents.hpp"
 #include "unit/serial/scenes.hpp"
 
 namespace mappm {
@@ -36,15 +37,34 @@ std::string swirl_in(const std::string& sides) {
   return text.replace(text.find(own), own.size(), sides);
 }
 
+/// How a sum comes about: by lists of the step, by lists that are kept, or by such after the PPs have moved.
+enum class Lists { once, kept, kept_after_motion };
+constexpr Lists all_kinds[] = {Lists::once, Lists::kept, Lists::kept_after_motion};
+constexpr double reach = 1.1;
+
+template <class Pass, int D>
+void list_or_sum(Pass& pass, FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region, Lists kind) {
+  if (kind == Lists::once) return pass.sum_once(fluid, grid);
+  pass.list(fluid, grid, region, reach);
+  if (kind == Lists::kept) pass.sum(fluid, grid);
+}
+
+template <int D>
+Vec<D, double> lengths_in_reach(const Model<D>& model) {
+  Vec<D, double> lengths;
+  for (int axis = 0; axis < D; ++axis) lengths[axis] = model.pair.length[axis] / reach;
+  return lengths;
+}
+
 template <class Numbers>
-std::vector<NeighbourSums<2>> sums_over(const Model<2>& model, FluidParticles<2> fluid, double behind) {
+std::vector<NeighbourSums<2>> sums_over(const Model<2>& model, FluidParticles<2> fluid, double behind, Lists kind) {
   for (auto& values : fluid.field) {  // what lies in memory behind the last particle
     const std::size_t count = values.size();
     values.resize(count + 64, behind);
     values.resize(count);
   }
   CellGrid<2> grid;
-  grid.fit(Region<2>::whole_box(), model.pair.length, {{8, 2}});
+  grid.fit(Region<2>::whole_box(), lengths_in_reach(model), {{8, 2}});
   grid.sort(fluid);
   for (auto& values : fluid.field) {  // sorting swapped the arrays
     const std::size_t count = values.size();
@@ -53,7 +73,7 @@ std::vector<NeighbourSums<2>> sums_over(const Model<2>& model, FluidParticles<2>
   }
   FluidPass<2, Numbers> pass(model, 1);
   std::vector<NeighbourSums<2>> result;
-  pass.sum(fluid, grid);
+  list_or_sum(pass, fluid, grid, Region<2>::whole_box(), kind);
   for (std::uint32_t i = 0; i < fluid.size(); ++i) result.push_back(pass.sums(i));
   return result;
 }
@@ -62,13 +82,15 @@ template <class Numbers>
 void expect_blindness() {
   const testing::Built<2> built(swirl);
   const State<2> state = built.state();
-  const auto clean = sums_over<Numbers>(built.model, state.fluid, 0.0);
-  const auto dirty = sums_over<Numbers>(built.model, state.fluid, std::numeric_limits<double>::quiet_NaN());
-  ASSERT_EQ(clean.size(), dirty.size());
-  for (std::size_t i = 0; i < clean.size(); ++i) {
-    EXPECT_EQ(clean[i].impulse, dirty[i].impulse) << "particle " << i;
-    EXPECT_EQ(clean[i].shift, dirty[i].shift) << "particle " << i;
-    EXPECT_EQ(clean[i].density, dirty[i].density) << "particle " << i;
+  for (const Lists kind : {Lists::once, Lists::kept}) {
+    const auto clean = sums_over<Numbers>(built.model, state.fluid, 0.0, kind);
+    const auto dirty = sums_over<Numbers>(built.model, state.fluid, std::numeric_limits<double>::quiet_NaN(), kind);
+    ASSERT_EQ(clean.size(), dirty.size());
+    for (std::size_t i = 0; i < clean.size(); ++i) {
+      EXPECT_EQ(clean[i].impulse, dirty[i].impulse) << "particle " << i;
+      EXPECT_EQ(clean[i].shift, dirty[i].shift) << "particle " << i;
+      EXPECT_EQ(clean[i].density, dirty[i].density) << "particle " << i;
+    }
   }
 }
 
@@ -96,27 +118,46 @@ FluidParticles<D> heap(const Model<D>& model, std::size_t count) {
   return fluid;
 }
 
+/// Moves every PP by half of what the reach leaves, most of that along one axis, so that many pairs come nearer by all.
+template <int D>
+void stir(const Model<D>& model, FluidParticles<D>& fluid) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> share(-1.0, 1.0);
+  for (std::size_t i = 0; i < fluid.size(); ++i) {
+    const int main_axis = static_cast<int>(random() % D);
+    const double along = (random() % 2 == 0 ? 1.0 : -1.0) * 0.98, across = 0.1 * share(random);
+    for (int axis = 0; axis < D; ++axis)
+      fluid.x(axis)[i] +=
+          std::trunc(0.5 * (reach - 1.0) * (axis == main_axis ? along : across) / model.pair.length[axis]);
+  }
+}
+
 /// The pass over a region inside the box, around which the other particles stand for ghosts, against all pairs.
 template <int D, class Numbers>
-void expect_sums_of_all_pairs(const char* scene, std::size_t count, int along, int across, int threads,
+void expect_sums_of_all_pairs(const char* scene, std::size_t count, int along, int across, int threads, Lists kind,
                               std::size_t least_pairs = 10000) {
-  SCOPED_TRACE(::testing::Message() << D << "D, cells " << along << " x " << across << ", threads " << threads);
+  SCOPED_TRACE(::testing::Message() << D << "D, cells " << along << " x " << across << ", threads " << threads
+                                    << ", lists " << static_cast<int>(kind));
   const testing::Built<D> built(scene);
   const Model<D>& model = built.model;
   FluidParticles<D> fluid = heap(model, count);
   Region<D> region;
   Vec<D, int> cells;
   for (int axis = 0; axis < D; ++axis) {
-    region.low[axis] = std::ceil(1.1 / model.pair.length[axis]);
+    region.low[axis] = std::ceil((reach + 0.1) / model.pair.length[axis]);
     region.high[axis] = box_quanta - region.low[axis];
     cells[axis] = axis == 0 ? along : across;
   }
   CellGrid<D> grid;
-  grid.fit(region, model.pair.length, cells);
+  grid.fit(region, lengths_in_reach(model), cells);
   grid.sort(fluid);
   FluidPass<D, Numbers> pass(model, threads);
   const Numbers numbers(model.pair, model.rest_density);
-  pass.sum(fluid, grid);
+  list_or_sum(pass, fluid, grid, widened(model, region, 0.5 * (reach - 1.0)), kind);
+  if (kind == Lists::kept_after_motion) {
+    stir(model, fluid);
+    pass.sum(fluid, grid);
+  }
   const auto point = [&](std::size_t i) {
     PairPoint<D> result;
     for (int axis = 0; axis < D; ++axis) {
@@ -150,23 +191,25 @@ void expect_sums_of_all_pairs(const char* scene, std::size_t count, int along, i
 
 TEST(FluidPass, sums_over_all_pairs) {
   const std::string deep = swirl_in("[4.0, 5.0, 6.0]");
-  for (const int threads : {1, 3})
-    for (const int across : {1, 2, 3})
-      for (const int along : {1, 8}) {
-        expect_sums_of_all_pairs<2, DoublePairs<2>>(swirl, 1500, along, across, threads);
-        expect_sums_of_all_pairs<3, DoublePairs<3>>(deep.c_str(), 1500, along, across, threads);
-        expect_sums_of_all_pairs<2, SinglePairs<2>>(swirl, 1000, along, across, threads);
-        expect_sums_of_all_pairs<3, SinglePairs<3>>(deep.c_str(), 1000, along, across, threads);
-      }
+  for (const Lists kind : all_kinds)
+    for (const int threads : {1, 3})
+      for (const int across : {1, 2, 3})
+        for (const int along : {1, 8}) {
+          expect_sums_of_all_pairs<2, DoublePairs<2>>(swirl, 1500, along, across, threads, kind);
+          expect_sums_of_all_pairs<3, DoublePairs<3>>(deep.c_str(), 1500, along, across, threads, kind);
+          expect_sums_of_all_pairs<2, SinglePairs<2>>(swirl, 1000, along, across, threads, kind, 5000);
+          expect_sums_of_all_pairs<3, SinglePairs<3>>(deep.c_str(), 1000, along, across, threads, kind, 5000);
+        }
 }
 
 /// Few particles in a long box: a block of them is wider than the window in which places of single precision differ.
 TEST(FluidPass, sums_over_all_pairs_where_blocks_are_wide) {
   const std::string wide = swirl_in("[40.0, 5.0]");
-  for (const int along : {1, 8}) {
-    expect_sums_of_all_pairs<2, DoublePairs<2>>(wide.c_str(), 200, along, 1, 1, 100);
-    expect_sums_of_all_pairs<2, SinglePairs<2>>(wide.c_str(), 200, along, 1, 1, 100);
-  }
+  for (const Lists kind : all_kinds)
+    for (const int along : {1, 8}) {
+      expect_sums_of_all_pairs<2, DoublePairs<2>>(wide.c_str(), 200, along, 1, 1, kind, 100);
+      expect_sums_of_all_pairs<2, SinglePairs<2>>(wide.c_str(), 200, along, 1, 1, kind, 100);
+    }
 }
 
 }  // namespace
