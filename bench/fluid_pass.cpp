@@ -1,20 +1,30 @@
-// The pair pass alone: a fluid in disorder, 39 neighbours in the plane and 77 in space, about 10^5 PPs. The number of
-// cells to a cutoff is varied: it decides how many candidates are met.
+// The pair pass alone, and the search for its lists: a fluid in disorder, 39 neighbours in the plane and 77 in space,
+// about 10^5 PPs. The number of cells to a reach is varied: it decides how many candidates the search meets, and how the
+// PPs lie in blocks.
 #include "parallel/fluid_pass.hpp"
 
 #include <benchmark/benchmark.h>
+
+#include <cstdint>
+#include <vector>
 
 #include "sorted_fluid.hpp"
 
 namespace mappm {
 namespace {
 
-template <int D, class Numbers>
-void pair_pass(benchmark::State& state) {
+enum class Work { pass, search };
+
+template <int D, class Numbers, Work work>
+void measure(benchmark::State& state) {
   bench::SortedFluid<D> setup(D == 2 ? 320 : 48, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   FluidPass<D, Numbers> pass(setup.fluid.model, 1);
+  setup.list(pass);
   for (auto _ : state) {
-    pass.sum(setup.particles, setup.grid);
+    if constexpr (work == Work::pass)
+      pass.sum(setup.particles, setup.grid);
+    else
+      setup.list(pass);
     benchmark::DoNotOptimize(pass.sums(0));
   }
   const auto rate = [&](std::uint64_t count) {
@@ -24,26 +34,19 @@ void pair_pass(benchmark::State& state) {
   state.counters["particle-steps/s"] = rate(setup.owned);
 }
 
-BENCHMARK(pair_pass<2, DoublePairs<2>>)
-    ->Name("fluid_pass_2d_39_neighbours")
-    ->ArgNames({"across", "along"})
-    ->ArgsProduct({{1, 2, 3, 4}, {4, 8, 16}})
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(pair_pass<3, DoublePairs<3>>)
-    ->Name("fluid_pass_3d_77_neighbours")
-    ->ArgNames({"across", "along"})
-    ->ArgsProduct({{1, 2, 3}, {4, 8, 16}})
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(pair_pass<2, SinglePairs<2>>)
-    ->Name("fluid_pass_2d_39_neighbours_single")
-    ->ArgNames({"across", "along"})
-    ->ArgsProduct({{1, 2, 3, 4}, {4, 8, 16}})
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(pair_pass<3, SinglePairs<3>>)
-    ->Name("fluid_pass_3d_77_neighbours_single")
-    ->ArgNames({"across", "along"})
-    ->ArgsProduct({{1, 2, 3}, {4, 8, 16}})
-    ->Unit(benchmark::kMillisecond);
+template <int D>
+void with_cells(benchmark::internal::Benchmark* benchmark) {
+  benchmark->ArgNames({"across", "along"})
+      ->ArgsProduct({D == 2 ? std::vector<std::int64_t>{1, 2, 3, 4} : std::vector<std::int64_t>{1, 2, 3}, {4, 8, 16}})
+      ->Unit(benchmark::kMillisecond);
+}
+
+BENCHMARK(measure<2, DoublePairs<2>, Work::pass>)->Name("pass_2d_39_neighbours")->Apply(with_cells<2>);
+BENCHMARK(measure<3, DoublePairs<3>, Work::pass>)->Name("pass_3d_77_neighbours")->Apply(with_cells<3>);
+BENCHMARK(measure<2, SinglePairs<2>, Work::pass>)->Name("pass_2d_39_neighbours_single")->Apply(with_cells<2>);
+BENCHMARK(measure<3, SinglePairs<3>, Work::pass>)->Name("pass_3d_77_neighbours_single")->Apply(with_cells<3>);
+BENCHMARK(measure<2, DoublePairs<2>, Work::search>)->Name("search_2d_39_neighbours")->Apply(with_cells<2>);
+BENCHMARK(measure<3, DoublePairs<3>, Work::search>)->Name("search_3d_77_neighbours")->Apply(with_cells<3>);
 
 }  // namespace
 }  // namespace mappm

@@ -4,6 +4,7 @@
 // instructions. Prints one line a figure; those in time are medians over the rounds, ns a pair within the cutoff.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <functional>
 #include <stdexcept>
@@ -20,12 +21,12 @@ namespace mappm {
 using bench::Counted, bench::Operations, bench::SortedFluid;
 namespace {
 
-constexpr int across = 1, along = 8;  // cells to a cutoff, as in the engine
+constexpr int across = 1, along = 8;  // cells to a reach, as in the engine
 
-/// What the lists of a pass hold: blocks that are measured, those kept for their distance, candidates, pairs within
-/// the cutoff.
+/// What the search meets, candidates, and what the lists hold that it makes: blocks, and those with a pair within the
+/// cutoff; pairs within the cutoff.
 struct Census {
-  std::uint64_t listed = 0, kept = 0, candidates = 0, pairs = 0;
+  std::uint64_t candidates = 0, blocks = 0, near_blocks = 0, pairs = 0;
 };
 
 /// The parts of a pass, each by itself. None is inlined, so that a tool can tell them apart.
@@ -39,6 +40,7 @@ class Parts {
       : setup_(side, across, along),
         numbers_(setup_.fluid.model.pair, setup_.fluid.model.rest_density),
         pass_(setup_.fluid.model, 1) {
+    setup_.list(pass_);
     sum();
     lay_blocks();
   }
@@ -46,42 +48,44 @@ class Parts {
   const SortedFluid<D>& setup() const { return setup_; }
 
   [[gnu::noinline]] void sort() { setup_.grid.sort(setup_.particles); }
+  [[gnu::noinline]] void search() { setup_.list(pass_); }
   [[gnu::noinline]] void lay_out() { lay_blocks(); }
-  [[gnu::noinline]] void lists() {
-    pass_.for_each_list(setup_.particles, setup_.grid, [](Lists&) {});
-  }
-  [[gnu::noinline]] void lists_and_distances() {
-    pass_.for_each_list(setup_.particles, setup_.grid, [&](Lists& lists) { measure_distances(lists); });
+  [[gnu::noinline]] void distances() {
+    for (const auto& lists : pass_.kept()) lists.for_each_chunk(numbers_, blocks_.data(), squares_, [](auto, auto) {});
   }
   [[gnu::noinline]] void whole_pass() { sum(); }
 
   Census census() {
     Census found;
-    pass_.for_each_list(setup_.particles, setup_.grid, [&](Lists& lists) {
-      found.listed += lists.size();
+    pass_.for_each_list(setup_.particles, setup_.grid, [&](const Lists& lists) {
       lists.for_each_partner([&](std::uint32_t, std::uint32_t) { ++found.candidates; });
-      measure_distances(lists);
-      found.kept += lists.size();
-      lists.for_each_block([](std::uint32_t) {},
-                           [&](std::uint32_t, const Lanes& q) {
-                             for (int lane = 0; lane < lane_count; ++lane) found.pairs += q[lane] < 1.0 ? 1 : 0;
-                           },
-                           [](std::uint32_t) {});
     });
-    if (found.pairs != setup_.pairs)
+    for (const auto& lists : pass_.kept()) {
+      found.blocks += lists.blocks().size();
+      lists.for_each_chunk(numbers_, blocks_.data(), squares_, [&](auto centres, std::size_t base) {
+        for (std::size_t n = base; n < centres.back().end; ++n) {
+          const double* const square = squares_.data() + (n - base) * lane_count;
+          const auto near = std::count_if(square, square + lane_count, [](double q) { return q < 1.0; });
+          found.pairs += static_cast<std::uint64_t>(near);
+          found.near_blocks += near > 0 ? 1 : 0;
+        }
+      });
+    }
+    if (found.pairs < setup_.pairs)
       throw std::runtime_error(fmt::format("{} pairs in the lists, {} in the fluid", found.pairs, setup_.pairs));
+    found.pairs = setup_.pairs;  // without some between ghosts, in blocks of others
     return found;
   }
 
  private:
   void lay_blocks() { blocks_.fill(setup_.fluid.model, numbers_, setup_.particles, setup_.grid); }
-  void sum() { pass_.sum_once(setup_.particles, setup_.grid); }
-  void measure_distances(Lists& lists) { lists.template measure<false>(numbers_, blocks_.data()); }
+  void sum() { pass_.sum(setup_.particles, setup_.grid); }
 
   SortedFluid<D> setup_;
   DoublePairs<D> numbers_;
   Pass pass_;
   PairBlocks<D, DoublePairs<D>> blocks_;
+  Column<double> squares_;
 };
 
 /// Operations of a block, and the registers it loads and stores.
@@ -97,19 +101,18 @@ Vec<D, Counted> of_lanes(Operations& operations) {
   return numbers;
 }
 
-/// Distances of a listed block (`PartnerLists::measure`).
+/// Distances of a block (`KeptLists`).
 template <int D>
 BlockWork work_of_distances(const Model<D>& model) {
   BlockWork work;
   const Vec<D, Counted> r = separation(model.pair, Vec<D, Counted>{} - of_lanes<D>(work.operations));
   dot(r, r);
-  work.operations.additions += 5;  // first and last partner against the number of the lane, and whether any is below 1
   work.loads = D;
   work.stores = 1;
   return work;
 }
 
-/// Root and law of a block that is kept (`for_each_block`, `pair_block`).
+/// Root and law of a block (`for_each_block`, `pair_block`).
 template <int D>
 BlockWork work_of_pairs(const Model<D>& model) {
   BlockWork work;
@@ -137,22 +140,21 @@ class Report {
 
   void print(int rounds) {
     const Census census = parts_.census();
-    const double owned = static_cast<double>(parts_.setup().owned), listed = static_cast<double>(census.listed),
-                 kept = static_cast<double>(census.kept), pairs = static_cast<double>(census.pairs),
-                 candidates = static_cast<double>(census.candidates);
+    const double owned = static_cast<double>(parts_.setup().owned), blocks = static_cast<double>(census.blocks),
+                 pairs = static_cast<double>(census.pairs);
     figure("particles", owned);
     figure("pairs", pairs);
     figure("pairs_per_particle", pairs / owned);
-    figure("blocks_listed_per_particle", listed / owned);
-    figure("blocks_kept_per_particle", kept / owned);
-    ratio("candidates_inside", pairs / candidates);
-    ratio("blocks_kept", kept / listed);
-    ratio("lanes_used_listed", candidates / listed / lane_count);
-    ratio("lanes_used_kept", pairs / kept / lane_count);
+    figure("blocks_per_particle", blocks / owned);
+    ratio("candidates_inside", pairs / static_cast<double>(census.candidates));
+    ratio("blocks_within_cutoff", static_cast<double>(census.near_blocks) / blocks);
+    ratio("lanes_used", pairs / blocks / lane_count);
     constexpr double block = sizeof(PairBlock<D, DoublePairs<D>>) / lane_count, state = 8.0 * (2 * D + 1);
     figure("bytes_per_particle_block", block);
-    // State read and block written, block read and written; more where a block leaves the cache between two rows.
-    figure("bytes_per_particle_memory", state + 3.0 * block);
+    figure("bytes_per_particle_lists", 4.0 * blocks / owned + 8.0);
+    // State read and block written, block read and written, lists read; more where a block leaves the cache between two
+    // rows.
+    figure("bytes_per_particle_memory", state + 3.0 * block + 4.0 * blocks / owned + 8.0);
     print_work("distances", work_of_distances(parts_.setup().fluid.model));
     print_work("pairs", work_of_pairs(parts_.setup().fluid.model));
     if (rounds > 0)
@@ -190,9 +192,9 @@ class Report {
   Parts<D> parts_;
   std::vector<std::pair<std::string, std::function<void()>>> all_parts_{
       {"sort", [&] { parts_.sort(); }},
+      {"search", [&] { parts_.search(); }},
       {"lay_out", [&] { parts_.lay_out(); }},
-      {"lists", [&] { parts_.lists(); }},
-      {"lists_and_distances", [&] { parts_.lists_and_distances(); }},
+      {"distances", [&] { parts_.distances(); }},
       {"whole_pass", [&] { parts_.whole_pass(); }}};
 };
 

@@ -48,15 +48,6 @@ void reset_peak() {
   std::ofstream("/proc/self/clear_refs") << "5";
 }
 
-/// Bytes a PP by the tables of the engine: state, what the pair pass keeps, and the scratch of the sort.
-template <int D>
-double table_bytes() {
-  constexpr double state = 8.0 * (1 + FluidParticles<D>::field_count);        // id and fields
-  constexpr double pass = sizeof(PairBlock<D, DoublePairs<D>>) / lane_count;  // of the blocks of the pass
-  constexpr double sort = 4.0 + 8.0 + 8.0;                                    // target, one field, ids
-  return state + pass + sort;
-}
-
 /// Mean number of neighbours of owned PPs that lie deeper in the region than rcut; `enough` of them are asked.
 template <int D>
 double mean_neighbours(const Model<D>& model, const FluidParticles<D>& particles, Region<D> region) {
@@ -119,8 +110,7 @@ void measure(const Communicator& world, const std::string& name, std::uint64_t s
                                                       {"particle_steps_per_s", particles / step},
                                                       {"particle_steps_per_s_and_core", particles / step / cores},
                                                       {"pairs_per_s", 0.5 * neighbours * particles / step},
-                                                      {"bytes_per_particle_resident", resident},
-                                                      {"bytes_per_particle_tables", table_bytes<D>()}};
+                                                      {"bytes_per_particle_resident", resident}};
   std::vector<std::pair<std::string, double>> ratios{{"speed_over_6e6", particles / step / cores / 6e6},
                                                      {"pair_share", pair_seconds / all_seconds},
                                                      {"bytes_over_200", resident / 200.0}};

@@ -5,12 +5,14 @@
 #include <cstdint>
 
 #include "disordered_fluid.hpp"
+#include "parallel/residents.hpp"
 #include "particles/cell_grid.hpp"
 #include "serial/neighbours.hpp"
 
 namespace mappm::bench {
 
-/// The outermost rcut of the box stands for ghosts. `across`, `along`: cells to a cutoff.
+/// The outermost reach of the box, rcut and the skin of the lists, stands for ghosts. `across`, `along`: cells to a
+/// reach.
 template <int D>
 struct SortedFluid {
   DisorderedFluid<D> fluid;
@@ -20,21 +22,31 @@ struct SortedFluid {
 
   SortedFluid(std::uint64_t side, int across, int along)
       : fluid(side), particles(fluid.state(Region<D>::whole_box()).fluid) {
-    Region<D> region;
+    Vec<D, double> in_reach;
+    Vec<D, int> cells;
     for (int axis = 0; axis < D; ++axis) {
-      region.low[axis] = std::ceil(1.0 / fluid.model.pair.length[axis]);
+      in_reach[axis] = fluid.model.pair.length[axis] / reach;
+      region.low[axis] = std::ceil(1.0 / in_reach[axis]);
       region.high[axis] = box_quanta - region.low[axis];
+      cells[axis] = axis == 0 ? along : across;
     }
-    Vec<D, int> cells_per_cutoff;
-    for (int axis = 1; axis < D; ++axis) cells_per_cutoff[axis] = across;
-    cells_per_cutoff[0] = along;
-    grid.fit(region, fluid.model.pair.length, cells_per_cutoff);
+    grid.fit(region, in_reach, cells);
     grid.sort(particles);
-    count(region);
+    count();
   }
 
+  /// Finds the lists of a pass, as at the start of a stay.
+  template <class Pass>
+  void list(Pass& pass) {
+    pass.list(particles, grid, widened(fluid.model, region, 0.5 * skin), reach);
+  }
+
+ private:
+  static constexpr double reach = 1.0 + skin;
+  Region<D> region;
+
   /// Pairs within the cutoff of which at least one PP is owned.
-  void count(const Region<D>& region) {
+  void count() {
     NeighbourSearch<D> search(fluid.model.box, Neighbours::cells);
     for (std::size_t i = 0; i < particles.size(); ++i) search.add(position(particles, i));
     for (std::size_t i = 0; i < particles.size(); ++i) {

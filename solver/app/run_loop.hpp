@@ -295,11 +295,12 @@ void RunLoop<D, E>::write_record(const std::string& state, const std::string& me
   if constexpr (requires { engine_.traffic(); }) {
     const Traffic traffic = engine_.traffic();
     std::vector<double> most{static_cast<double>(traffic.messages), static_cast<double>(traffic.bytes),
-                             static_cast<double>(traffic.neighbours)};
+                             static_cast<double>(traffic.neighbours), static_cast<double>(engine_.orderings())};
     setup_.group.maximum(most);
     record_.messages_per_step = done > 0.0 ? most[0] / done : 0.0;
     record_.bytes_per_step = done > 0.0 ? most[1] / done : 0.0;
     record_.neighbours = static_cast<int>(most[2]);
+    record_.orderings = static_cast<std::uint64_t>(most[3]);
   }
   if constexpr (requires { engine_.domains(); }) record_.borders = borders_in_scene_units();
   record_.state = state;

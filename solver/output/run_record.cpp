@@ -69,6 +69,7 @@ std::string run_record_text(const RunRecord& record) {
   json["exchange"] = {{"neighbours", record.neighbours},
                       {"messages_per_step", record.messages_per_step},
                       {"bytes_per_step", record.bytes_per_step}};
+  json["orderings"] = record.orderings;
   json["digest"] = record.digest;
   json["momentum"] = {{"start", decimal_strings(record.start_momentum)},
                       {"end", decimal_strings(record.end_momentum)},

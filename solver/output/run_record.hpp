@@ -25,6 +25,7 @@ struct RunRecord {
   std::vector<std::pair<std::string, double>> wall_seconds;           // by phase
   double messages_per_step = 0.0, bytes_per_step = 0.0;               // sent by the process that sends most
   int neighbours = 0;                                                 // most of a process
+  std::uint64_t orderings = 0;  // steps in which the PPs of a process were put in order anew, most of a process
   std::string digest;                                                 // of the state at `step`
   std::vector<Int128> start_momentum, end_momentum, outside_impulse;  // iota, an entry an axis
   double iota = 0.0;                                                  // in scene units

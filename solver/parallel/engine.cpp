@@ -116,6 +116,7 @@ void ParallelEngine<D>::step() {
       grid_.sort(state_.fluid);
       find_rows();
       residents_->settle(state_.fluid, single_step);
+      ++orderings_;
       watch_.end(Phase::sort);
     }
     if (single_step) {

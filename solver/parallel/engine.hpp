@@ -38,6 +38,8 @@ class ParallelEngine {
   const std::string& range_error() const { return range_error_; }
   PhaseSeconds phase_seconds() const { return watch_.seconds(); }
   Traffic traffic() const;
+  /// Steps so far in which the PPs of this process were put in order anew.
+  std::uint64_t orderings() const { return orderings_; }
   const Domains<D>& domains() const { return domains_; }
   /// The ledger of the faces in the last step, in the order of partners, then the entry of all partners; empty where
   /// none was due.
@@ -89,6 +91,7 @@ class ParallelEngine {
   std::optional<std::uint64_t> traced_particle_;  // in the next step
   MaybeTrace<D> trace_;
 
+  std::uint64_t orderings_ = 0;
   std::string range_error_;
   Stopwatch watch_;
   Traffic before_;  // of the domains before the present ones

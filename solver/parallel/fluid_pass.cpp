@@ -116,13 +116,13 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
     for_each_row(grid, first, last, [&](const Vec<D, int>& row) {
       for_each_list(fluid, grid, row, true, search, [&](Lists& lists) {
         lists.template measure<false>(numbers_, blocks_.data(), square);
-        std::uint32_t centre = 0;
-        lists.for_each_kept([&](std::uint32_t place) { centre = place; },
-                            [&](std::uint32_t block, std::uint8_t lanes) {
-                              if (inside[centre] != 0 || reaches_inside(block))
-                                kept.add(block, lanes, !wide.empty() && wide[block] != 0);
-                            },
-                            [&] { kept.end(centre); });
+        lists.for_each_centre([&](std::uint32_t place, std::span<const std::uint32_t> blocks, const auto& lanes) {
+          const auto is_wide = [&](std::uint32_t block) { return !wide.empty() && wide[block] != 0; };
+          if (inside[place] != 0)
+            kept.add(place, blocks, [](std::uint32_t) { return true; }, is_wide, lanes);
+          else
+            kept.add(place, blocks, reaches_inside, is_wide, lanes);
+        });
       });
     });
   });
@@ -136,20 +136,6 @@ void FluidPass<D, Numbers>::sum(FluidParticles<D>& fluid, const CellGrid<D>& gri
       kept_[band].template sum<Kernel, transport>(numbers_, blocks_, search.squares);
     });
   });
-}
-
-template <int D, class Numbers>
-std::size_t FluidPass<D, Numbers>::listed_blocks() const {
-  std::size_t count = 0;
-  for (const auto& kept : kept_) count += kept.block_count();
-  return count;
-}
-
-template <int D, class Numbers>
-std::size_t FluidPass<D, Numbers>::bytes() const {
-  std::size_t bytes = blocks_.bytes();
-  for (const auto& kept : kept_) bytes += kept.bytes();
-  return bytes;
 }
 
 /// Whether each block is so wide that its lanes must be named; empty where none can be.

@@ -61,9 +61,8 @@ class FluidPass {
   /// After `list` and with its arguments: calls visit(lists) with the candidates that it meets, lists by lists.
   void for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const std::function<void(Lists&)>& visit);
 
-  /// Blocks in the lists, and memory of blocks and lists, bytes.
-  std::size_t listed_blocks() const;
-  std::size_t bytes() const;
+  /// What `list` found.
+  const std::vector<KeptLists<D, Numbers>>& kept() const { return kept_; }
 
  private:
   using Centre = PairCentre<D, Numbers>;

@@ -23,30 +23,54 @@ class KeptLists {
     centres_.clear();
     blocks_.clear();
     named_.clear();
-    first_ = 0;
   }
 
-  /// Adds a block to the centre that is being built, in rising order as far as two could be the same: a block on the
-  /// border of two rows is found in both. `named`: count only these lanes, one a bit.
-  void add(std::uint32_t block, std::uint8_t lanes, bool named) {
-    const bool again = blocks_.size() > first_ && blocks_.back() == block;
-    if (!again) blocks_.push_back(block);
-    if (!named) return;
-    const auto entry = static_cast<std::uint32_t>(blocks_.size() - 1);
-    if (again)
-      named_.back().lanes |= lanes;
-    else
-      named_.push_back({entry, lanes});
-  }
-  /// Ends the centre that is being built.
-  void end(std::uint32_t place) {
-    if (blocks_.size() > first_) centres_.push_back({place, static_cast<std::uint32_t>(blocks_.size())});
-    first_ = blocks_.size();
+  /// Adds those blocks of a centre that are `chosen`. They stand in rising order as far as two can be the same: a block
+  /// on the border of two rows is found in both. Where `named`, only these lanes of them count, one a bit.
+  template <class Chosen, class NamedBlocks, class Lanes>
+  MAPPM_INLINE void add(std::uint32_t place, std::span<const std::uint32_t> blocks, const Chosen& chosen,
+                        const NamedBlocks& named, const Lanes& lanes) {
+    const std::size_t first = blocks_.size();
+    reserve_tightly(blocks_, first + blocks.size());
+    for (std::size_t n = 0; n < blocks.size(); ++n) {
+      if (!chosen(blocks[n])) continue;
+      const bool again = blocks_.size() > first && blocks_.back() == blocks[n];
+      if (!again) blocks_.push_back(blocks[n]);
+      if (!named(blocks[n])) continue;
+      if (again)
+        named_.back().lanes |= lanes(n);
+      else
+        named_.push_back({static_cast<std::uint32_t>(blocks_.size() - 1), lanes(n)});
+    }
+    if (blocks_.size() > first) centres_.push_back({place, static_cast<std::uint32_t>(blocks_.size())});
   }
 
   /// All pairs; `squares` is scratch of the caller's thread.
   template <class Kernel, bool transport>
   void sum(const Numbers& numbers, PairBlocks<D, Numbers>& blocks, Column<Real>& squares) const {
+    for_each_chunk(numbers, blocks.data(), squares, [&](std::span<const Centre> centres, std::size_t base) {
+      sum_blocks<Kernel, transport, false, D>(
+          numbers, blocks.data(),
+          [&](auto&&... calls) __attribute__((always_inline)) {
+            detail::for_each_block<RealLanes>(
+                centres, base, blocks_.data(), [&](std::size_t n) __attribute__((always_inline)) {
+                  return squares.data() + (n - base) * lane_count;
+                },
+                calls...);
+          },
+          [&](std::uint32_t place) { return blocks.centre(place); }, [](std::uint32_t) { return UnitFactor{}; },
+          [&](std::uint32_t place, const auto& sums) { blocks.add(place, sums); });
+    });
+  }
+
+  struct Centre {
+    std::uint32_t particle, end;  // its place, and where its blocks end
+  };
+  /// Calls visit(centres, base) for all centres, some at once. Block n of theirs, n >= base, has its squared distances
+  /// in `squares`, entry n - base.
+  template <class Visit>
+  void for_each_chunk(const Numbers& numbers, const PairBlock<D, Numbers>* blocks, Column<Real>& squares,
+                      Visit&& visit) const {
     std::size_t base = 0;
     auto named = named_.begin();
     for (std::size_t first = 0; first < centres_.size();) {
@@ -55,31 +79,18 @@ class KeptLists {
       const std::span chunk = std::span(centres_).subspan(first, last - first);
       const std::size_t room = (chunk.back().end - base + detail::roots_ahead) * lane_count;
       if (squares.size() < room) squares.resize(room);
-      measure(numbers, blocks.data(), chunk, base, named, squares.data());
-      sum_blocks<Kernel, transport, false, D>(
-          numbers, blocks.data(),
-          [&](auto&&... calls) __attribute__((always_inline)) {
-            detail::for_each_block<RealLanes>(
-                chunk, base, blocks_.data(), [&](std::size_t n) __attribute__((always_inline)) {
-                  return squares.data() + (n - base) * lane_count;
-                },
-                calls...);
-          },
-          [&](std::uint32_t place) { return blocks.centre(place); }, [](std::uint32_t) { return UnitFactor{}; },
-          [&](std::uint32_t place, const auto& sums) { blocks.add(place, sums); });
+      measure(numbers, blocks, chunk, base, named, squares.data());
+      visit(chunk, base);
       base = chunk.back().end;
       first = last;
     }
   }
 
-  std::size_t bytes() const { return centres_.capacity() * sizeof(Centre) + blocks_.capacity() * sizeof(std::uint32_t); }
-  std::size_t block_count() const { return blocks_.size(); }
+  /// Of all centres in turn.
+  std::span<const std::uint32_t> blocks() const { return blocks_; }
 
  private:
   static constexpr std::size_t full = 512 / lane_count;  // blocks: their distances stay in the nearest cache
-  struct Centre {
-    std::uint32_t particle, end;  // its place, and where its blocks end
-  };
   struct NamedLanes {
     std::uint32_t entry;  // in blocks_
     std::uint8_t lanes;
@@ -115,7 +126,6 @@ class KeptLists {
   std::vector<Centre> centres_;
   Column<std::uint32_t> blocks_;
   std::vector<NamedLanes> named_;  // in the order of the entries
-  std::size_t first_ = 0;          // block of the centre that is being built
 };
 
 }  // namespace mappm

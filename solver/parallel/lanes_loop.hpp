@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -195,20 +196,19 @@ class PartnerLists {
         begin, visit, end);
   }
 
-  /// After `measure`: calls visit(block, lanes) for the blocks of each centre, bit k of `lanes` saying whether lane k is
-  /// a partner, between begin(particle) and end().
-  template <class Begin, class Visit, class End>
-  void for_each_kept(Begin&& begin, Visit&& visit, End&& end) const {
-    std::size_t n = 0;
+  /// After `measure`: calls visit(particle, blocks, lanes) for each centre. Bit k of lanes(n) says whether lane k of
+  /// blocks[n] is a partner.
+  template <class Visit>
+  void for_each_centre(Visit&& visit) const {
+    std::size_t begin = 0;
     for (const Centre& centre : centres_) {
-      begin(centre.particle);
-      for (; n < centre.end; ++n) {
-        const std::uint32_t from = from_[n];
+      visit(centre.particle, std::span(block_).subspan(begin, centre.end - begin), [&](std::size_t n) {
+        const std::uint32_t from = from_[begin + n];
         const auto first = static_cast<int>(std::max(first_[from], Real(0)));
         const auto last = static_cast<int>(std::min(last_[from], static_cast<Real>(lane_count - 1)));
-        visit(block_[n], static_cast<std::uint8_t>((2u << last) - (1u << first)));
-      }
-      end();
+        return static_cast<std::uint8_t>((2u << last) - (1u << first));
+      });
+      begin = centre.end;
     }
   }
 

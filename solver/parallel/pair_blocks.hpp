@@ -71,7 +71,6 @@ class PairBlocks {
 
   Block* data() { return blocks_.data(); }
   std::size_t place_count() const { return blocks_.size() * lane_count; }
-  std::size_t bytes() const { return blocks_.capacity() * sizeof(Block); }
   /// The block of a place alone, with sums of zero.
   PairBlocks one(std::uint32_t place) const {
     PairBlocks result;

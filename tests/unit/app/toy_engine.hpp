@@ -23,6 +23,7 @@ class ToyEngine {
     if (state_.step == bad_step) error_ = "step 7: particle 1: v = 99: too fast";
     if (state_.step == signal_step) std::raise(SIGTERM);
   }
+  std::uint64_t present_step() const { return state_.step; }
   State<2>& state() { return state_; }
   const std::string& range_error() const { return error_; }
   PhaseSeconds phase_seconds() const { return {{"toy", 0.5}}; }

@@ -26,6 +26,7 @@ RunRecord record() {
   record.messages_per_step = 2.0;
   record.bytes_per_step = 1024.0;
   record.neighbours = 1;
+  record.orderings = 6;
   record.digest = "00000000000000ff";
   record.start_momentum = {(Int128{1} << 100), -7};
   record.outside_impulse = {-(Int128{1} << 90), 8};
@@ -55,6 +56,7 @@ TEST(RunRecord, has_every_key_that_readers_rely_on) {
   EXPECT_EQ(json["wall_seconds"]["pairs"], 1.5);
   EXPECT_EQ(json["exchange"],
             nlohmann::json({{"neighbours", 1}, {"messages_per_step", 2.0}, {"bytes_per_step", 1024.0}}));
+  EXPECT_EQ(json["orderings"], 6);
   EXPECT_EQ(json["domains"], nlohmann::json({2, 2}));
   EXPECT_EQ(json["borders"], nlohmann::json({{0.0, 0.25, 1.0}, {0.0, 1.5, 2.0}}));
   EXPECT_EQ(json["scene"]["text"], "name = 'a'\n");
