@@ -28,6 +28,7 @@ from verification.solver import MPI_ENVIRONMENT, Options, Run, program
 
 PAPER_BOX, PAPER_DENSITY = (177.0, 2816.0), 12.83  # rcut; PPs to the square of rcut
 PAPER_PROCESSES = (1, 4, 16, 64, 256, 1024)
+MARGIN = 1.1  # rcut, of ghosts: the skin of the lists is in it
 NARROWEST = 9.0  # rcut, of a domain of the paper's system: its discs are as wide
 LAYOUTS = {"narrow": ((1000, 100), "2x1"), "wide": ((1000, 100), "1x2"), "thin": ((2000, 24), "1x2")}
 QUICK_LAYOUTS = {"narrow": ((200, 40), "2x1"), "wide": ((200, 40), "1x2"), "thin": ((400, 16), "1x2")}
@@ -67,7 +68,7 @@ def cost_of_messages() -> tuple[float, float]:
 def margin_of(box: tuple[float, float], grid: tuple[int, int]) -> float:
     """Area of the margins of one domain of a periodic grid, rcut = 1: what it receives, and what it sends."""
     sides = [length / count for length, count in zip(box, grid, strict=True)]
-    wide = [side + (2.0 if count > 1 else 0.0) for side, count in zip(sides, grid, strict=True)]
+    wide = [side + (2.0 * MARGIN if count > 1 else 0.0) for side, count in zip(sides, grid, strict=True)]
     return wide[0] * wide[1] - sides[0] * sides[1]
 
 
@@ -102,7 +103,7 @@ def measure(quick: bool, repeats: int, folder: Path, say: Callable[[str], None])
     points = {name: median_of(rounds) for name, rounds in found.items()}
     model = CostModel(*fit_work(list(points.values())), *cost_of_messages())
     cutoff = float(scene_of(2, (1, 1))[1].partition("=")[2])
-    bytes_per_ghost = points["wide"].bytes / (2.0 * cutoff * layouts["wide"][0][0])  # spacing 1, two margins
+    bytes_per_ghost = points["wide"].bytes / (2.0 * MARGIN * cutoff * layouts["wide"][0][0])  # spacing 1, two margins
     figures = {
         "figure nanoseconds_per_particle": 1e9 * model.particle,
         "figure nanoseconds_per_ghost": 1e9 * model.ghost_byte * bytes_per_ghost,

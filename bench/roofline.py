@@ -4,7 +4,8 @@
 
 Each round measures what a core can do at most (bench-machine_limits) and, at once, what the pass takes
 (bench-pair_census) on a disordered fluid with 39 neighbours a particle in the plane and 77 in space. The census counts
-candidates, blocks and lanes in the very lists of the pass, and the operations of a block in the law itself. A figure is
+candidates, blocks and lanes in the very lists of the pass, and the operations of a block in the law itself. Sorting and
+the search for lists come once in a stay, some steps in which the PPs keep their order; all else in each step. A figure is
 the median over the rounds, a ratio that of the ratios within a round; times are those that the thread computed.
 Instructions a pair are counted under callgrind in the build of the preset avx2 (valgrind knows no AVX-512) and are the
 same every time; without either they are left out. A line a figure, `ratio NAME VALUE` or `figure NAME VALUE`. Ends
@@ -29,7 +30,7 @@ from verification.solver import build_folder, program
 FLUIDS = ("fluid_2d_39", "fluid_3d_77")
 SIDES, QUICK_SIDES, COUNTED_SIDES = (320, 48), (64, 16), (128, 24)  # particles along a side, in the plane and in space
 ROUNDS_A_CALL = 5  # of the census, whose fluid takes longer to make than to measure
-PARTS = ("sort", "lay_out", "lists", "lists_and_distances", "whole_pass")  # of the census
+PARTS = ("sort", "search", "lay_out", "distances", "whole_pass")  # of the census
 NANO = 1e9
 
 Figures = dict[str, float]
@@ -53,13 +54,13 @@ def census(build: Path, sides: tuple[int, int], rounds: int) -> list[str]:
 
 
 def apart(taken: Figures) -> Figures:
-    """What the parts of the census take, each less what it holds of another; sorting comes before the pass."""
+    """What the parts of the census take, each less what it holds of another; sorting and search come before the pass."""
     return {
         "sort": taken["sort"],
+        "search": taken["search"],
         "lay_out": taken["lay_out"],
-        "lists": taken["lists"],
-        "distances": taken["lists_and_distances"] - taken["lists"],
-        "pairs": taken["whole_pass"] - taken["lay_out"] - taken["lists_and_distances"],
+        "distances": taken["distances"],
+        "pairs": taken["whole_pass"] - taken["lay_out"] - taken["distances"],
         "pass": taken["whole_pass"],
     }
 
@@ -73,10 +74,9 @@ class Costs:
         self.lanes = self.machine["lanes"]
 
     def a_pair(self, count: str) -> float:
-        """Registers of this kind: in the blocks that are listed, whose distances are taken, and in those kept."""
-        pairs = self.own["pairs_per_particle"]
-        listed, kept = self.own["blocks_listed_per_particle"] / pairs, self.own["blocks_kept_per_particle"] / pairs
-        return listed * self.own[f"block_distances.{count}"] + kept * self.own[f"block_pairs.{count}"]
+        """Registers of this kind, in distances and pairs of all blocks in the lists."""
+        blocks = self.own["blocks_per_particle"] / self.own["pairs_per_particle"]
+        return blocks * (self.own[f"block_distances.{count}"] + self.own[f"block_pairs.{count}"])
 
     @property
     def operations(self) -> float:

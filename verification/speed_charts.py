@@ -89,8 +89,7 @@ def costs(figures: dict[str, float], file: Path) -> None:
 
 def bounds(figures: dict[str, float], file: Path) -> None:
     """What a pair takes in the pass, part by part, beside its bounds by the machine; figures of bench/roofline.py."""
-    parts = {"lay_out": ("blocks laid out", "#a9c4dd"), "lists": ("lists", "#6f9cc4"),
-             "distances": ("distances", "#3f79ad"), "pairs": ("pairs", BLUE)}
+    parts = {"lay_out": ("blocks laid out", "#a9c4dd"), "distances": ("distances", "#3f79ad"), "pairs": ("pairs", BLUE)}
     limits = {"loads": "loads, nearest cache", "stores": "stores, nearest cache", "memory": "main memory",
               "roots": "roots", "multiplications": "multiplications", "additions": "additions", "both": "both at once",
               "integers": "integer additions", "full_lanes": "arithmetic on full lanes"}
@@ -104,14 +103,17 @@ def bounds(figures: dict[str, float], file: Path) -> None:
                 left += taken
             whole = figures[f"figure fluid_{name}.ns_per_pair_pass"]
             panel.text(left, 0, f" {whole:.3g}", va="center", fontsize=8)
-            for row, limit in enumerate(limits, start=1):
+            ordering = sum(figures[f"figure fluid_{name}.ns_per_pair_{part}"] for part in ("sort", "search"))
+            panel.barh(1, ordering, 0.7, color="#a9c4dd")
+            panel.text(ordering, 1, f" {ordering:.3g}", va="center", fontsize=8)
+            for row, limit in enumerate(limits, start=2):
                 value = figures[f"figure fluid_{name}.bound_ns_per_pair_{limit}"]
                 panel.barh(row, value, 0.6, color=GREEN if limit == "full_lanes" else GREY)
                 panel.text(value, row, f" {value:.2g}", va="center", fontsize=8)
             panel.set_title(words, fontsize=10)
             panel.set_xlabel("ns per pair")
             panel.margins(x=0.12)
-        axes[0].set_yticks(range(len(limits) + 1), ["the pass, measured", *limits.values()])
+        axes[0].set_yticks(range(len(limits) + 2), ["the pass, measured", "order and lists, once a stay", *limits.values()])
         axes[0].invert_yaxis()
         axes[1].tick_params(labelleft=False)
         axes[1].legend(frameon=False, fontsize=8, loc="lower right")

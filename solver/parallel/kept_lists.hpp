@@ -49,13 +49,12 @@ class KeptLists {
   template <class Kernel, bool transport>
   void sum(const Numbers& numbers, PairBlocks<D, Numbers>& blocks, Column<Real>& squares) const {
     for_each_chunk(numbers, blocks.data(), squares, [&](std::span<const Centre> centres, std::size_t base) __attribute__((always_inline)) {
-      const std::uint32_t* const listed = blocks_.data();
       sum_blocks<Kernel, transport, false, D>(
           numbers, blocks.data(),
           [&](auto&&... calls) __attribute__((always_inline)) {
             detail::for_each_block<RealLanes>(
-                centres, base, listed, [&](std::size_t n) __attribute__((always_inline)) {
-                  return of_chunk + (n - base) * lane_count;
+                centres, base, blocks_.data(), [&](std::size_t n) __attribute__((always_inline)) {
+                  return squares.data() + (n - base) * lane_count;
                 },
                 calls...);
           },
