@@ -190,12 +190,11 @@ class Report {
 
   std::string name_;
   Parts<D> parts_;
-  std::vector<std::pair<std::string, std::function<void()>>> all_parts_{
-      {"sort", [&] { parts_.sort(); }},
-      {"search", [&] { parts_.search(); }},
-      {"lay_out", [&] { parts_.lay_out(); }},
-      {"distances", [&] { parts_.distances(); }},
-      {"whole_pass", [&] { parts_.whole_pass(); }}};
+  std::vector<std::pair<std::string, std::function<void()>>> all_parts_{{"sort", [&] { parts_.sort(); }},
+                                                                        {"search", [&] { parts_.search(); }},
+                                                                        {"lay_out", [&] { parts_.lay_out(); }},
+                                                                        {"distances", [&] { parts_.distances(); }},
+                                                                        {"whole_pass", [&] { parts_.whole_pass(); }}};
 };
 
 }  // namespace

@@ -6,7 +6,7 @@ from verification.charts import BLUE, DARK, GREEN, GREY, RED, figure_of
 from verification.solid_charts import costs_of_solids
 
 FLUIDS = {"2d_39": "plane, 39 neighbours", "3d_77": "space, 77 neighbours"}
-PHASES = {"pairs": BLUE, "integrate": GREEN, "sort": GREY, "solids": DARK, "exchange": RED}
+PHASES = {"pairs": BLUE, "lists": "#6f9cc4", "sort": GREY, "integrate": GREEN, "solids": DARK, "exchange": RED}
 
 
 def speeds(figures: dict[str, float], file: Path) -> None:

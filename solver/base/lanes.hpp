@@ -111,11 +111,6 @@ MAPPM_INLINE Lanes magnitude(const Lanes& x) { return std::experimental::abs(x);
 MAPPM_INLINE double real_of(std::int64_t x) { return static_cast<double>(x); }
 MAPPM_INLINE Lanes real_of(const IntLanes& x) { return std::experimental::static_simd_cast<Lanes>(x); }
 
-/// Same as the scalar `wrap_position`, in every lane.
-MAPPM_INLINE Lanes wrap_position(const Lanes& x) {
-  return x - std::experimental::floor(x * (1.0 / box_quanta)) * box_quanta;
-}
-
 MAPPM_INLINE Lanes load_lanes(const double* from) { return Lanes(from, std::experimental::element_aligned); }
 MAPPM_INLINE FloatLanes load_lanes(const float* from) { return FloatLanes(from, std::experimental::element_aligned); }
 MAPPM_INLINE IntLanes load_lanes(const std::int64_t* from) {

@@ -20,13 +20,13 @@ struct RunRecord {
   std::string scene_file, scene_name, scene_text;
   Terms terms;
   std::vector<std::string> warnings;
-  std::uint64_t first_step = 0, step = 0;                             // of this program run: begun at, reached
-  double time_step = 0.0;                                             // in scene units
-  std::vector<std::pair<std::string, double>> wall_seconds;           // by phase
-  double messages_per_step = 0.0, bytes_per_step = 0.0;               // sent by the process that sends most
-  int neighbours = 0;                                                 // most of a process
+  std::uint64_t first_step = 0, step = 0;                    // of this program run: begun at, reached
+  double time_step = 0.0;                                    // in scene units
+  std::vector<std::pair<std::string, double>> wall_seconds;  // by phase
+  double messages_per_step = 0.0, bytes_per_step = 0.0;      // sent by the process that sends most
+  int neighbours = 0;                                        // most of a process
   std::uint64_t orderings = 0;  // steps in which the PPs of a process were put in order anew, most of a process
-  std::string digest;                                                 // of the state at `step`
+  std::string digest;           // of the state at `step`
   std::vector<Int128> start_momentum, end_momentum, outside_impulse;  // iota, an entry an axis
   double iota = 0.0;                                                  // in scene units
   int ranks = 1, threads = 1;

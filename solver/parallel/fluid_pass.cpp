@@ -119,7 +119,8 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
         lists.for_each_centre([&](std::uint32_t place, std::span<const std::uint32_t> blocks, const auto& lanes) {
           const auto is_wide = [&](std::uint32_t block) { return !wide.empty() && wide[block] != 0; };
           if (inside[place] != 0)
-            kept.add(place, blocks, [](std::uint32_t) { return true; }, is_wide, lanes);
+            kept.add(
+                place, blocks, [](std::uint32_t) { return true; }, is_wide, lanes);
           else
             kept.add(place, blocks, reaches_inside, is_wide, lanes);
         });

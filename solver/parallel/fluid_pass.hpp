@@ -52,9 +52,9 @@ class FluidPass {
   }
   NeighbourSums<D> sums(std::uint32_t i) const { return numbers_.sums(blocks_.sums(blocks_.place(i))); }
 
-  /// After a sum and `add_frozen` in the step in which `fluid` was ordered, with their arguments: what each partner gave to the PP with this id that lies in
-  /// the region of the grid, every pair of the pass taken alone; none where there is no such PP. For an FP `id` is the
-  /// index of its solid in the step.
+  /// After a sum and `add_frozen` in the step in which `fluid` was ordered, with their arguments: what each partner
+  /// gave to the PP with this id that lies in the region of the grid, every pair of the pass taken alone; none where
+  /// there is no such PP. For an FP `id` is the index of its solid in the step.
   std::optional<std::vector<PartnerTrace<D>>> trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
                                                     const std::vector<FrozenInStep<D>>& frozen, std::uint64_t particle);
 

@@ -39,8 +39,8 @@ class Halo {
   /// Where PPs lie that others need: a region for each image of theirs.
   const std::vector<Region<D>>& needed_by_others() const { return image_ghost_reach_; }
 
-  /// On entry `state` holds what this process owned before the particles moved, at their new positions, and the PPs of a
-  /// stay. On return it holds its particles and, as far out as rcut + skin, ghosts, all in its frame, and its solids;
+  /// On entry `state` holds what this process owned before the particles moved, at their new positions, and the PPs of
+  /// a stay. On return it holds its particles and, as far out as rcut + skin, ghosts, all in its frame, and its solids;
   /// `copies` holds copies of solids. True if the stay of the PPs goes on, in which a ghost that has left that margin
   /// may be an old one; otherwise it has ended, and they are in any order. The message itself counts as one of PPs.
   bool exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch);

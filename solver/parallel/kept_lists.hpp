@@ -48,19 +48,21 @@ class KeptLists {
   /// All pairs; `squares` is scratch of the caller's thread.
   template <class Kernel, bool transport>
   void sum(const Numbers& numbers, PairBlocks<D, Numbers>& blocks, Column<Real>& squares) const {
-    for_each_chunk(numbers, blocks.data(), squares, [&](std::span<const Centre> centres, std::size_t base) __attribute__((always_inline)) {
-      sum_blocks<Kernel, transport, false, D>(
-          numbers, blocks.data(),
-          [&](auto&&... calls) __attribute__((always_inline)) {
-            detail::for_each_block<RealLanes>(
-                centres, base, blocks_.data(), [&](std::size_t n) __attribute__((always_inline)) {
-                  return squares.data() + (n - base) * lane_count;
-                },
-                calls...);
-          },
-          [&](std::uint32_t place) { return blocks.centre(place); }, [](std::uint32_t) { return UnitFactor{}; },
-          [&](std::uint32_t place, const auto& sums) { blocks.add(place, sums); });
-    });
+    for_each_chunk(
+        numbers, blocks.data(),
+        squares, [&](std::span<const Centre> centres, std::size_t base) __attribute__((always_inline)) {
+          sum_blocks<Kernel, transport, false, D>(
+              numbers, blocks.data(),
+              [&](auto&&... calls) __attribute__((always_inline)) {
+                detail::for_each_block<RealLanes>(
+                    centres, base, blocks_.data(),
+                    [&](std::size_t n)
+                        __attribute__((always_inline)) { return squares.data() + (n - base) * lane_count; },
+                    calls...);
+              },
+              [&](std::uint32_t place) { return blocks.centre(place); }, [](std::uint32_t) { return UnitFactor{}; },
+              [&](std::uint32_t place, const auto& sums) { blocks.add(place, sums); });
+        });
   }
 
   struct Centre {
@@ -97,8 +99,8 @@ class KeptLists {
   };
   using Named = typename std::vector<NamedLanes>::const_iterator;
 
-  /// Squared distances of the blocks of some centres, at least 1 in lanes that are no partners. `named`: the first entry
-  /// of theirs with named lanes.
+  /// Squared distances of the blocks of some centres, at least 1 in lanes that are no partners. `named`: the first
+  /// entry of theirs with named lanes.
   void measure(const Numbers& numbers, const PairBlock<D, Numbers>* blocks, std::span<const Centre> centres,
                std::size_t base, Named& named, Real* squares) const {
     std::size_t n = base;

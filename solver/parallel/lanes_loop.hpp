@@ -190,9 +190,9 @@ class PartnerLists {
   MAPPM_INLINE void for_each_block(Begin&& begin, Visit&& visit, End&& end) {
     const Columns columns = this->columns();
     detail::for_each_block<RealLanes>(
-        centres_, 0, columns.block, [&](std::size_t n) __attribute__((always_inline)) {
-          return columns.distance + std::size_t{columns.from[n]} * lane_count;
-        },
+        centres_, 0, columns.block,
+        [&](std::size_t n)
+            __attribute__((always_inline)) { return columns.distance + std::size_t{columns.from[n]} * lane_count; },
         begin, visit, end);
   }
 
@@ -282,8 +282,8 @@ class PartnerLists {
 /// All pairs of the lists: adds to the sums of the partners, and calls receive(particle, sums) with what each centre
 /// receives. `walk` calls for_each_block. centre_of(n) gives a PairCentre, beta_of(n) a function of the separation.
 /// Zeros are added to lanes beside the partners.
-template <class Kernel, bool transport, bool lanes_first, int D, class Numbers, class Walk, class CentreOf, class BetaOf,
-          class Receive>
+template <class Kernel, bool transport, bool lanes_first, int D, class Numbers, class Walk, class CentreOf,
+          class BetaOf, class Receive>
 MAPPM_INLINE void sum_blocks(const Numbers& numbers, PairBlock<D, Numbers>* const blocks, Walk&& walk,
                              CentreOf&& centre_of, BetaOf&& beta_of, Receive&& receive) {
   PairResult<D, decltype(load_lanes(blocks->density))> sums;

@@ -1,5 +1,6 @@
 // The search of the fast engine. A row is a line of cells along x, in which particles are ordered by x; the partners of
-// a particle are a range in each row nearby, as long as the chord that the row cuts from the sphere of the cutoff.
+// a particle are a range in each row nearby, as long as the chord that the row cuts from the sphere of the reach, which
+// is the unit of length here.
 #pragma once
 
 #include <algorithm>
@@ -63,26 +64,26 @@ class NearRows {
   /// For places in the row.
   MAPPM_INLINE void find(const CellGrid<D>& grid, const Vec<D, Lanes>& x) {
     const Lanes place = grid.place(0, x[0]);
-    const double cells_per_cutoff = 1.0 / grid.width(0);
-    Vec<D, Lanes> inside;  // of the row, from its lower borders, rcut
+    const double cells_per_reach = 1.0 / grid.width(0);
+    Vec<D, Lanes> inside;  // of the row, from its lower borders
     for (int axis = 1; axis < D; ++axis)
       inside[axis] = (grid.place(axis, x[axis]) - static_cast<double>(row_[axis])) * grid.width(axis);
     for (std::size_t n = 0; n < rows_.size(); ++n) {
-      Lanes left = 1.0 + rounding;  // square of half the chord, rcut
+      Lanes left = 1.0 + rounding;  // square of half the chord
       for (int axis = 1; axis < D; ++axis) {
         const double border = rows_[n].offset[axis] * grid.width(axis);
         const Lanes beside =
             larger(larger(border - inside[axis], inside[axis] - (border + grid.width(axis))), Lanes(0.0));
         left -= beside * beside;
       }
-      const Lanes chord = square_root(larger(left, Lanes(0.0))) * cells_per_cutoff + rounding;
+      const Lanes chord = square_root(larger(left, Lanes(0.0))) * cells_per_reach + rounding;
       const Lanes half = smaller(chord, larger(left * 1e300, Lanes(-1.0)));  // without a chord -1: an empty range
       whole_numbers(larger(place - half, Lanes(lowest_)), &low_[n * lane_count]);
       whole_numbers(smaller(place + half, Lanes(highest_)), &high_[n * lane_count]);
     }
   }
 
-  /// Places [first, end) of a row that hold all those within the cutoff of the place of a lane, and others. There may
+  /// Places [first, end) of a row that hold all those within the reach of the place of a lane, and others. There may
   /// be none, with end <= first.
   struct Range {
     std::uint32_t first, end;
@@ -94,7 +95,7 @@ class NearRows {
   }
 
  private:
-  static constexpr double rounding = 1e-6;  // far more than that of a place, in cells and in rcut
+  static constexpr double rounding = 1e-6;  // far more than that of a place, in cells and in reaches
   struct Row {
     std::size_t cells;  // its first one
     std::uint32_t gap;

@@ -194,8 +194,8 @@ void Residents<D>::leave(FluidParticles<D>& fluid) {
   fluid.resize(kept);
 }
 
-#define MAPPM_INSTANTIATE(D)                                                    \
-  template class Residents<D>;                                                  \
+#define MAPPM_INSTANTIATE(D)   \
+  template class Residents<D>; \
   template Region<D> widened<D>(const Model<D>&, Region<D>, double);
 MAPPM_INSTANTIATE(2)
 MAPPM_INSTANTIATE(3)

@@ -50,8 +50,8 @@ class Residents {
   /// Largest displacement of the own PPs in the step made now, rcut.
   void moved(double farthest) { farthest_ = last_farthest_ = farthest; }
 
-  /// In a stay that lasts: brings ghosts up to date from messages (halo.hpp), whose readers then stand behind their PPs.
-  /// False where the stay ends by what they say: some ghosts may be new and others old, and `leave` is due.
+  /// In a stay that lasts: brings ghosts up to date from messages (halo.hpp), whose readers then stand behind their
+  /// PPs. False where the stay ends by what they say: some ghosts may be new and others old, and `leave` is due.
   bool refresh(FluidParticles<D>& fluid, std::span<BufferReader> readers);
   /// Ends a stay: only what this process owned in the last step remains in `fluid`.
   void leave(FluidParticles<D>& fluid);
@@ -76,9 +76,9 @@ class Residents {
   std::vector<std::uint32_t> places_;
   std::size_t near_ = 0;
   std::vector<std::uint32_t> near_outside_;
-  std::vector<std::uint8_t> owned_;        // of the near ones, in this step
-  std::vector<std::uint8_t> up_to_date_;   // of all
-  std::vector<std::uint32_t> table_;       // hashed by id: indices into places_
+  std::vector<std::uint8_t> owned_;       // of the near ones, in this step
+  std::vector<std::uint8_t> up_to_date_;  // of all
+  std::vector<std::uint32_t> table_;      // hashed by id: indices into places_
   // A message names much the same PPs as the one before, in the same order: indices into places_ by message, or `none`,
   // and where each of these stood in its message.
   std::vector<std::vector<std::uint32_t>> sequences_;

@@ -7,8 +7,9 @@
 
 namespace mappm {
 
-/// Of a step: messages of PPs; their order by cells, and their lists, where it is found anew; pairs of PPs; pairs of PPs and FPs; FPs, contacts and motion of
-/// solids; copies of solids and reports on them, their messages included; motion of PPs.
+/// Of a step: messages of PPs; where it is found anew, their order by cells, and the lists of their pairs; pairs of PPs;
+/// pairs of PPs and FPs; FPs, contacts and motion of solids; copies of solids and reports on them, their messages
+/// included; motion of PPs.
 enum class Phase { exchange, sort, lists, pairs, frozen_pairs, solids, copies, integrate };
 
 class Stopwatch {
@@ -21,7 +22,8 @@ class Stopwatch {
     last_ = now;
   }
   PhaseSeconds seconds() const {
-    constexpr const char* names[] = {"exchange", "sort", "lists", "pairs", "frozen_pairs", "solids", "copies", "integrate"};
+    constexpr const char* names[] = {"exchange",     "sort",   "lists",  "pairs",
+                                     "frozen_pairs", "solids", "copies", "integrate"};
     PhaseSeconds named;
     for (const char* name : names) named.emplace_back(name, seconds_[named.size()]);
     return named;

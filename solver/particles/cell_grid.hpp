@@ -1,5 +1,5 @@
-// Cells of one size over a region and its margin, and the order of particles by cell. Cells are a fraction of rcut
-// (several cells to a cutoff trim the candidate pairs); rows along x are contiguous in memory.
+// Cells of one size over a region and its margin, and the order of particles by cell. Cells are a fraction of the reach
+// within which pairs are looked for (several to a reach trim the candidates); rows along x are contiguous in memory.
 #pragma once
 
 #include <algorithm>
@@ -14,16 +14,16 @@ namespace mappm {
 template <int D>
 class CellGrid {
  public:
-  /// Cells whose borders fall on those of the region; beyond it, `per_cutoff` layers of margin cells on each side, on
-  /// each axis. length: of a position quantum in rcut, per axis.
-  void fit(const Region<D>& region, const Vec<D, double>& length, const Vec<D, int>& per_cutoff) {
+  /// Cells whose borders fall on those of the region; beyond it, `per_reach` layers of margin cells on each side, on
+  /// each axis. length: of a position quantum in reaches, per axis.
+  void fit(const Region<D>& region, const Vec<D, double>& length, const Vec<D, int>& per_reach) {
     region_ = region;
-    margin_ = per_cutoff;
+    margin_ = per_reach;
     std::size_t cells = 1;
     for (int axis = 0; axis < D; ++axis) {
       const double quanta = region.high[axis] - region.low[axis];
-      // A little wider than rcut / per_cutoff, so that rounding never hides a pair within the cutoff.
-      inner_[axis] = std::max(1, static_cast<int>(quanta * length[axis] * per_cutoff[axis] * (1.0 - 1e-6)));
+      // A little wider than the reach / per_reach, so that rounding never hides a pair within it.
+      inner_[axis] = std::max(1, static_cast<int>(quanta * length[axis] * per_reach[axis] * (1.0 - 1e-6)));
       scale_[axis] = inner_[axis] / quanta;
       width_[axis] = quanta * length[axis] / inner_[axis];
       count_[axis] = inner_[axis] + 2 * margin_[axis];

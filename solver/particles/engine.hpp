@@ -27,7 +27,8 @@ concept Engine = requires(E engine, const E constant) {
   engine.step();
   /// Steps made since the start of the scene. Costs nothing.
   { constant.present_step() } -> std::same_as<std::uint64_t>;
-  /// What this process owns, valid between steps. May cost some steps' saving: not to be called in each. Bookkeeping of the series (sampled_impulse) may be changed.
+  /// What this process owns, valid between steps. May cost some steps' saving: not to be called in each. Bookkeeping of
+  /// the series (sampled_impulse) may be changed.
   { engine.state() } -> std::same_as<State<D>&>;
   /// Empty, or the first value that left its range on this process: step, particle, value and likely cause.
   { constant.range_error() } -> std::convertible_to<std::string>;

@@ -92,8 +92,8 @@ void expect_digests(const Built<D>& built, const Domains<D>& domains, const Para
   EXPECT_EQ(engine.range_error(), "");
 }
 
-/// The same without a look at the state before the end: the PPs stay as long as they can. On one process in `ending` and
-/// of the steps one in three they are made to end their stay, which is nobody else's concern.
+/// The same without a look at the state before the end: the PPs stay as long as they can. On one process in `ending`
+/// and of the steps one in three they are made to end their stay, which is nobody else's concern.
 template <int D>
 void expect_digest_after_stays(const Built<D>& built, const Domains<D>& domains, int ending,
                                const std::vector<std::uint64_t>& digests) {
@@ -212,8 +212,8 @@ TEST(ParallelEngine, tells_where_its_time_went) {
     phases.insert(name);
     EXPECT_GT(seconds, 0.0) << name;
   }
-  EXPECT_EQ(phases,
-            (std::set<std::string>{"exchange", "sort", "lists", "pairs", "frozen_pairs", "solids", "copies", "integrate"}));
+  EXPECT_EQ(phases, (std::set<std::string>{"exchange", "sort", "lists", "pairs", "frozen_pairs", "solids", "copies",
+                                           "integrate"}));
 }
 
 }  // namespace

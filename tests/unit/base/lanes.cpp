@@ -39,19 +39,6 @@ TEST(Lanes, numbers_and_whole_parts) {
   }
 }
 
-TEST(Lanes, positions_are_wrapped_as_one_by_one) {
-  const std::array<double, 6> places{-1.0, -0.5 * box_quanta, 0.0, box_quanta - 1.0, box_quanta, 1.25 * box_quanta};
-  std::array<double, lane_count> some{};
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    some[k % lane_count] = places[k];
-    const Lanes wrapped = wrap_position(load_lanes(some.data()));
-    for (int lane = 0; lane < lane_count; ++lane) {
-      EXPECT_EQ(wrapped[lane], wrap_position(some[lane]));
-      EXPECT_FALSE(std::signbit(double{wrapped[lane]}));  // minus zero would be another word of the state
-    }
-  }
-}
-
 TEST(Lanes, integers_become_real_and_magnitudes_positive) {
   const std::array<std::int64_t, 5> numbers{0, -1, (std::int64_t{1} << 53) + 1, -(std::int64_t{1} << 53) - 3,
                                             std::numeric_limits<std::int64_t>::max()};

@@ -1,0 +1,177 @@
+// PPs placed by hand around one border of a region, and messages written by hand.
+#include "parallel/residents.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "parallel/communicator.hpp"
+#include "unit/serial/scenes.hpp"
+
+namespace mappm {
+namespace {
+
+/// Lengths are given in rcut. The region reaches from 4 to 8 along x, and a neighbour lies below it.
+class ResidentsTest : public ::testing::Test {
+ protected:
+  struct PP {
+    std::uint64_t id;
+    double x, y = 5.0;
+  };
+
+  ResidentsTest()
+      : built_(testing::head("[12.0, 10.8]", "0.3", "11.1111111111")),
+        region_{{{quanta(0, 4.0), 0.0}}, {{quanta(0, 8.0), box_quanta}}},
+        below_{{{quanta(0, 0.0), 0.0}}, {{quanta(0, 4.0), box_quanta}}},
+        residents_(built_.model, region_, {widened(built_.model, below_, 1.0 + skin)}) {}
+
+  double quanta(int axis, double length) const { return std::floor(length / built_.model.pair.length[axis]); }
+  double length(int axis, double quanta) const { return quanta * built_.model.pair.length[axis]; }
+
+  void settle(const std::vector<PP>& particles) {
+    for (const PP& pp : particles) {
+      fluid_.id.push_back(pp.id);
+      for (auto& values : fluid_.field) values.push_back(0.0);
+      fluid_.x(0).back() = quanta(0, pp.x);
+      fluid_.x(1).back() = quanta(1, pp.y);
+      fluid_.density().back() = 1.0;
+    }
+    residents_.settle(fluid_);
+  }
+  /// Moves an own PP along x, as a step does.
+  void move(std::uint32_t i, double x) {
+    residents_.moved(std::abs(x - length(0, fluid_.x(0)[i])));
+    fluid_.x(0)[i] = quanta(0, x);
+  }
+  bool receive(const std::vector<PP>& particles) {
+    Buffer buffer;
+    put(buffer, static_cast<std::uint64_t>(particles.size()));
+    for (const PP& pp : particles) put(buffer, pp.id);
+    for (std::size_t field = 0; field < fluid_.field.size(); ++field)
+      for (const PP& pp : particles) put(buffer, field == 0 ? quanta(0, pp.x) : field == 1 ? quanta(1, pp.y) : 7.0);
+    std::vector<BufferReader> readers{BufferReader(buffer)};
+    const bool stay = residents_.lasts() && residents_.refresh(fluid_, readers);
+    EXPECT_TRUE(!stay || readers[0].at_end());
+    return stay;
+  }
+  std::vector<std::uint64_t> sent() const {
+    std::vector<std::uint32_t> chosen;
+    residents_.select(fluid_, 0, chosen);
+    std::vector<std::uint64_t> ids;
+    for (const std::uint32_t i : chosen) ids.push_back(fluid_.id[i]);
+    return ids;
+  }
+  std::vector<std::uint64_t> owned_after_leaving() {
+    residents_.leave(fluid_);
+    return fluid_.id;
+  }
+
+  testing::Built<2> built_;
+  Region<2> region_, below_;
+  Residents<2> residents_;
+  FluidParticles<2> fluid_;
+};
+
+using Ids = std::vector<std::uint64_t>;
+
+TEST_F(ResidentsTest, ghosts_are_brought_up_to_date_in_their_places) {
+  settle({{1, 6.0}, {2, 4.5}, {3, 3.9}, {4, 3.0}});
+  ASSERT_TRUE(receive({{4, 3.02}, {3, 3.91}}));
+  EXPECT_EQ(fluid_.x(0)[2], quanta(0, 3.91));
+  EXPECT_EQ(fluid_.x(0)[3], quanta(0, 3.02));
+  EXPECT_EQ(fluid_.density()[3], 7.0);
+  EXPECT_EQ(fluid_.density()[1], 1.0);
+  // Again, in another order and one fewer: 4 has gone far enough away.
+  fluid_.x(0)[3] = quanta(0, 2.94);
+  ASSERT_TRUE(receive({{3, 3.92}}));
+  EXPECT_EQ(fluid_.x(0)[2], quanta(0, 3.92));
+  EXPECT_EQ(owned_after_leaving(), (Ids{1, 2}));
+}
+
+TEST_F(ResidentsTest, images_of_one_particle_are_told_apart_by_their_places) {
+  settle({{1, 6.0}, {3, 3.9, 5.0}, {3, 3.9, -0.5}});
+  ASSERT_TRUE(receive({{3, 3.92, -0.49}, {3, 3.92, 5.01}}));
+  EXPECT_EQ(fluid_.x(1)[1], quanta(1, 5.01));
+  EXPECT_EQ(fluid_.x(1)[2], quanta(1, -0.49));
+}
+
+TEST_F(ResidentsTest, what_is_sent_follows_from_places_and_owners) {
+  settle({{1, 7.0}, {2, 5.14}, {3, 5.0}, {4, 4.02}, {5, 3.99}, {6, 3.5}});
+  EXPECT_EQ(sent(), (Ids{3, 4}));  // 5 is another's, and all beyond 5.1 are not needed
+  move(1, 5.14 - 0.3 * skin);
+  EXPECT_EQ(sent(), (Ids{3, 4}));
+  fluid_.x(0)[2] = quanta(0, 5.11);  // and 3 no longer
+  EXPECT_EQ(sent(), (Ids{4}));
+  fluid_.x(0)[1] = quanta(0, 5.09);
+  EXPECT_EQ(sent(), (Ids{2, 4}));
+}
+
+TEST_F(ResidentsTest, a_particle_changes_its_owner_in_its_place) {
+  settle({{1, 6.0}, {2, 4.01}, {3, 3.99}, {4, 3.5}});
+  EXPECT_EQ(residents_.near_outside().size(), 1u);
+  EXPECT_EQ(residents_.near_outside()[0], 2u);
+  move(1, 3.98);  // and is sent to its next owner,
+  EXPECT_EQ(sent(), (Ids{2}));
+  ASSERT_TRUE(receive({{3, 4.01}, {4, 3.5}}));
+  EXPECT_EQ(sent(), (Ids{3}));  // who sends it from now on
+  ASSERT_TRUE(receive({{2, 3.97}, {4, 3.5}}));
+  EXPECT_EQ(owned_after_leaving(), (Ids{1, 3}));
+}
+
+TEST_F(ResidentsTest, a_stay_ends_when_the_own_particles_have_moved_too_far) {
+  settle({{1, 6.0}, {4, 3.5}});
+  move(0, 6.0 + 0.3 * skin);
+  ASSERT_TRUE(receive({{4, 3.5}}));
+  move(0, 6.0 + 0.1 * skin);  // back: what counts is the sum
+  ASSERT_TRUE(receive({{4, 3.5}}));
+  move(0, 6.0 + 0.2 * skin);
+  EXPECT_FALSE(residents_.lasts());
+}
+
+TEST_F(ResidentsTest, a_stay_ends_when_ghosts_have_moved_too_far) {
+  settle({{1, 6.0}, {4, 3.5}});
+  ASSERT_TRUE(receive({{4, 3.5 + 0.4 * skin}}));
+  EXPECT_FALSE(receive({{4, 3.5 + 0.55 * skin}}));
+}
+
+TEST_F(ResidentsTest, of_a_step_the_largest_displacement_counts_once) {
+  settle({{1, 6.0}, {4, 3.5}});
+  move(0, 6.0 + 0.3 * skin);
+  ASSERT_TRUE(receive({{4, 3.5 + 0.3 * skin}}));
+  move(0, 6.0 + 0.4 * skin);
+  EXPECT_TRUE(receive({{4, 3.5 + 0.4 * skin}}));
+}
+
+TEST_F(ResidentsTest, a_stay_ends_when_a_stranger_comes_near) {
+  settle({{1, 6.0}, {4, 3.5}});
+  EXPECT_TRUE(receive({{4, 3.5}, {9, 4.0 - 1.0 - 0.7 * skin}}));
+  EXPECT_FALSE(receive({{4, 3.5}, {9, 4.0 - 1.0 - 0.3 * skin}}));
+}
+
+TEST_F(ResidentsTest, a_stay_ends_when_a_ghost_nearby_is_sent_no_more) {
+  settle({{1, 6.0}, {4, 4.0 - 1.0 - 0.7 * skin}, {5, 4.0 - 1.0 - 0.4 * skin}});
+  EXPECT_TRUE(receive({{5, 4.0 - 1.0 - 0.4 * skin}}));  // 4 may have left the margin by a small step
+  EXPECT_FALSE(receive({{4, 4.0 - 1.0 - 0.7 * skin}}));
+}
+
+TEST_F(ResidentsTest, a_stay_of_a_single_step_keeps_what_is_owned) {
+  settle({{1, 6.0}, {2, 4.01}, {3, 3.99}, {4, 3.5}});
+  residents_.leave(fluid_);
+  residents_.settle(fluid_, true);
+  EXPECT_FALSE(residents_.lasts());
+  EXPECT_EQ(owned_after_leaving(), (Ids{1, 2}));
+}
+
+TEST_F(ResidentsTest, lists_pay_where_three_steps_like_the_last_fit_into_a_stay) {
+  settle({{1, 6.0}});
+  EXPECT_TRUE(residents_.pays());
+  move(0, 6.0 + 0.2 * skin);
+  EXPECT_TRUE(residents_.pays());
+  move(0, 6.0 + 0.5 * skin);
+  EXPECT_FALSE(residents_.pays());
+}
+
+}  // namespace
+}  // namespace mappm
