@@ -61,8 +61,8 @@ def test_the_fit_finds_the_terms_it_was_given() -> None:
 
 
 def test_margins_and_neighbours_of_a_grid() -> None:
-    assert cost_model.margin_of((10.0, 40.0), (1, 4)) == 20.0  # two strips of 10 x 1
-    assert cost_model.margin_of((10.0, 40.0), (2, 4)) == 7 * 12 - 5 * 10
+    assert cost_model.margin_of((10.0, 40.0), (1, 4)) == pytest.approx(22.0)  # two strips of 10 x 1.1
+    assert cost_model.margin_of((10.0, 40.0), (2, 4)) == pytest.approx(7.2 * 12.2 - 5 * 10)
     assert [cost_model.neighbours_of(grid) for grid in ((1, 1), (1, 2), (1, 4), (2, 2), (4, 4))] == [0, 1, 2, 3, 8]
 
 
