@@ -62,8 +62,8 @@ def scene_of(dimension: int, sides: tuple[int, ...]) -> tuple[str, ...]:
 
 
 def steps_for(particles: int, quick: bool) -> int:
-    """About a second on one core, and enough steps to leave the lattice."""
-    return 10 if quick else max(10, min(400, 4_000_000 // particles))
+    """A second or more on one core, and enough steps to leave the lattice and to make lists of neighbours some ten times."""
+    return 10 if quick else max(80, min(1600, 16_000_000 // particles))
 
 
 def own_speed(overrides: tuple[str, ...], steps: int, ranks: int, folder: Path) -> Speed:

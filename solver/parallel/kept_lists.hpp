@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -32,17 +33,22 @@ class KeptLists {
                         const NamedBlocks& named, const Lanes& lanes) {
     const std::size_t first = blocks_.size();
     reserve_tightly(blocks_, first + blocks.size());
+    blocks_.resize(first + blocks.size());
+    std::uint32_t* const added = blocks_.data() + first;
+    std::size_t count = 0;
     for (std::size_t n = 0; n < blocks.size(); ++n) {
       if (!chosen(blocks[n])) continue;
-      const bool again = blocks_.size() > first && blocks_.back() == blocks[n];
-      if (!again) blocks_.push_back(blocks[n]);
-      if (!named(blocks[n])) continue;
+      const bool again = count > 0 && added[count - 1] == blocks[n];
+      added[count] = blocks[n];
+      count += again ? 0 : 1;
+      if (Numbers::largest_extent == std::numeric_limits<double>::infinity() || !named(blocks[n])) continue;
       if (again)
         named_.back().lanes |= lanes(n);
       else
-        named_.push_back({static_cast<std::uint32_t>(blocks_.size() - 1), lanes(n)});
+        named_.push_back({static_cast<std::uint32_t>(first + count - 1), lanes(n)});
     }
-    if (blocks_.size() > first) centres_.push_back({place, static_cast<std::uint32_t>(blocks_.size())});
+    blocks_.resize(first + count);
+    if (count > 0) centres_.push_back({place, static_cast<std::uint32_t>(first + count)});
   }
 
   /// All pairs; `squares` is scratch of the caller's thread.
