@@ -56,11 +56,12 @@ def scalings(figures: dict[str, float], file: Path) -> None:
         efficiency.legend(frameon=False, fontsize=7, loc="lower left")
         floor = [0.0] * len(counts)
         rates = _over_processes(figures, "weak_2d", "particle_steps_per_s")
-        for phase, color in PHASES.items():
-            seconds = _over_processes(figures, "weak_2d", f"microseconds_{phase}")
-            step = {count: sum(_over_processes(figures, "weak_2d", f"microseconds_{name}")[count] for name in PHASES) for count in counts}
+        measured = {phase: _over_processes(figures, "weak_2d", f"microseconds_{phase}") for phase in PHASES}
+        measured = {phase: seconds for phase, seconds in measured.items() if seconds}  # older tables know fewer phases
+        step = {count: sum(seconds[count] for seconds in measured.values()) for count in counts}
+        for phase, seconds in measured.items():
             values = [1e9 / rates[count] * count * seconds[count] / step[count] for count in counts]
-            phases.bar(range(len(counts)), values, 0.6, bottom=floor, color=color, label=phase if max(values) > 1 else None)
+            phases.bar(range(len(counts)), values, 0.6, bottom=floor, color=PHASES[phase], label=phase if max(values) > 1 else None)
             floor = [low + value for low, value in zip(floor, values, strict=True)]
         phases.set_xticks(range(len(counts)), counts)
         phases.set_xlabel("processes")
