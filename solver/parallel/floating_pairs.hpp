@@ -20,8 +20,10 @@ class FloatingPairs : public DoublePairs<D> {
   using Sum = double;
   using DoublePairs<D>::DoublePairs;
 
-  NeighbourSums<D> sums(const PairResult<D, double>& given) const {
-    NeighbourSums<D> sums;
+  /// Sums of one PP, or of lanes.
+  template <class Real>
+  NeighbourSums<D, Fixed<Real>> sums(const PairResult<D, Real>& given) const {
+    NeighbourSums<D, Fixed<Real>> sums;
     for (int axis = 0; axis < D; ++axis) {
       sums.impulse[axis] = to_fixed(given.impulse[axis]);
       sums.shift[axis] = to_fixed(given.shift[axis]);

@@ -2,6 +2,7 @@
 
 import json
 import math
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from bench import precision
+from verification.solver import build_folder
 from verification.speed_charts import precisions
 
 ROOT = Path(__file__).parents[2]
@@ -47,3 +49,13 @@ def test_sums_in_floating_point_are_read_or_left_out(monkeypatch: pytest.MonkeyP
     program.write_text("#!/bin/sh\necho ratio a.c 1.5\nexit 3\n")
     with pytest.raises(precision.Broken, match="ended with 3"):
         precision.of_exactness()
+
+
+def test_the_pass_with_floating_sums_compiles() -> None:
+    """No build of the tests has it."""
+    commands = json.loads((build_folder() / "compile_commands.json").read_text())
+    (command,) = [entry["command"] for entry in commands if entry["file"].endswith("solver/parallel/fluid_pass.cpp")]
+    words = shlex.split(command)
+    del words[words.index("-o") : words.index("-o") + 2]
+    done = subprocess.run([*words, "-O0", "-fsyntax-only", "-DMAPPM_FLOATING_SUMS"], cwd=build_folder(), capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
