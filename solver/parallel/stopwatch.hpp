@@ -7,8 +7,8 @@
 
 namespace mappm {
 
-/// Of a step: messages of PPs; where it is found anew, their order by cells, and the lists of their pairs; pairs of PPs;
-/// pairs of PPs and FPs; FPs, contacts and motion of solids; copies of solids and reports on them, their messages
+/// Of a step: messages of PPs; where it is found anew, their order by cells, and the lists of their pairs; pairs of
+/// PPs; pairs of PPs and FPs; FPs, contacts and motion of solids; copies of solids and reports on them, their messages
 /// included; motion of PPs.
 enum class Phase { exchange, sort, lists, pairs, frozen_pairs, solids, copies, integrate };
 
