@@ -45,17 +45,10 @@ struct DisorderedFluid {
   }
 };
 
-template <int D>
-Vec<D, double> position(const FluidParticles<D>& fluid, std::size_t i) {
-  Vec<D, double> x;
-  for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];
-  return x;
-}
-
 /// Distance in rcut, without periodic images.
 template <int D>
 double distance(const Model<D>& model, const FluidParticles<D>& fluid, std::size_t i, std::size_t j) {
-  const Vec<D, double> r = separation(model.pair, position(fluid, i) - position(fluid, j));
+  const Vec<D, double> r = separation(model.pair, fluid.position(i) - fluid.position(j));
   return std::sqrt(dot(r, r));
 }
 

@@ -71,9 +71,10 @@ class Parts {
         }
       });
     }
-    if (found.pairs < setup_.pairs)
+    // Some between ghosts are in blocks of others.
+    if (found.pairs < setup_.pairs || found.pairs > setup_.pairs + setup_.pairs_of_ghosts)
       throw std::runtime_error(fmt::format("{} pairs in the lists, {} in the fluid", found.pairs, setup_.pairs));
-    found.pairs = setup_.pairs;  // without some between ghosts, in blocks of others
+    found.pairs = setup_.pairs;
     return found;
   }
 

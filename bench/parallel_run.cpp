@@ -53,16 +53,16 @@ template <int D>
 double mean_neighbours(const Model<D>& model, const FluidParticles<D>& particles, Region<D> region) {
   constexpr std::uint64_t enough = 2000;
   NeighbourSearch<D> search(model.box, Neighbours::cells);
-  for (std::size_t i = 0; i < particles.size(); ++i) search.add(bench::position(particles, i));
+  for (std::size_t i = 0; i < particles.size(); ++i) search.add(particles.position(i));
   for (int axis = 0; axis < D; ++axis) {
     region.low[axis] += std::ceil(1.0 / model.pair.length[axis]);
     region.high[axis] -= std::ceil(1.0 / model.pair.length[axis]);
   }
   std::uint64_t asked = 0, neighbours = 0;
   for (std::size_t i = 0; i < particles.size() && asked < enough; ++i) {
-    if (!region.contains(bench::position(particles, i))) continue;
+    if (!region.contains(particles.position(i))) continue;
     ++asked;
-    search.for_each_near(bench::position(particles, i), [&](int k) {
+    search.for_each_near(particles.position(i), [&](int k) {
       const auto j = static_cast<std::size_t>(k);
       if (j != i && bench::distance(model, particles, i, j) < 1.0) ++neighbours;
     });

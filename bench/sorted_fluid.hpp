@@ -18,7 +18,7 @@ struct SortedFluid {
   DisorderedFluid<D> fluid;
   FluidParticles<D> particles;
   CellGrid<D> grid;
-  std::uint64_t owned = 0, pairs = 0;
+  std::uint64_t owned = 0, pairs = 0, pairs_of_ghosts = 0;
 
   SortedFluid(std::uint64_t side, int across, int along)
       : fluid(side), particles(fluid.state(Region<D>::whole_box()).fluid) {
@@ -45,17 +45,17 @@ struct SortedFluid {
   static constexpr double reach = 1.0 + skin;
   Region<D> region;
 
-  /// Pairs within the cutoff of which at least one PP is owned.
+  /// Pairs within the cutoff: those of which at least one PP is owned, and the others.
   void count() {
     NeighbourSearch<D> search(fluid.model.box, Neighbours::cells);
-    for (std::size_t i = 0; i < particles.size(); ++i) search.add(position(particles, i));
+    for (std::size_t i = 0; i < particles.size(); ++i) search.add(particles.position(i));
     for (std::size_t i = 0; i < particles.size(); ++i) {
-      if (!region.contains(position(particles, i))) continue;
-      ++owned;
-      search.for_each_near(position(particles, i), [&](int k) {
+      const bool own = region.contains(particles.position(i));
+      owned += own ? 1 : 0;
+      search.for_each_near(particles.position(i), [&](int k) {
         const auto j = static_cast<std::size_t>(k);
-        if (j == i || distance(fluid.model, particles, i, j) >= 1.0) return;
-        if (j > i || !region.contains(position(particles, j))) ++pairs;
+        if (j <= i || distance(fluid.model, particles, i, j) >= 1.0) return;
+        ++(own || region.contains(particles.position(j)) ? pairs : pairs_of_ghosts);
       });
     }
   }

@@ -1,7 +1,8 @@
 // The grid of domains (the paper's ACDs): one box of positions a process. Free of MPI.
 //
 //   owned   a particle whose position lies in the process' region, or a solid whose centre does
-//   ghost   a copy of a particle within rcut outside the region, in the frame of the region (a periodic image is
+//   ghost   a copy of a particle within rcut and skin outside the region, in the frame of the region (a periodic image
+//   is
 //           shifted by a whole box)
 //   copy    the same for a solid, within the margin that its FPs and contacts need
 //   image   a neighbouring region as seen from here: its rank, and its place in the frame of this region

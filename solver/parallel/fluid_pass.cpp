@@ -162,12 +162,8 @@ std::vector<std::uint8_t> FluidPass<D, Numbers>::places_in(const FluidParticles<
                                                            const Region<D>& region) const {
   std::vector<std::uint8_t> inside(blocks_.place_count(), 0);
   for (int plane = 0; plane < grid.count(D - 1); ++plane)
-    for (std::uint32_t i = grid.plane_start(plane); i < grid.plane_start(plane + 1); ++i) {
-      bool in = true;
-      for (int axis = 0; axis < D; ++axis)
-        in = in && fluid.x(axis)[i] >= region.low[axis] && fluid.x(axis)[i] < region.high[axis];
-      inside[i + blocks_.gap(plane)] = in ? 1 : 0;
-    }
+    for (std::uint32_t i = grid.plane_start(plane); i < grid.plane_start(plane + 1); ++i)
+      inside[i + blocks_.gap(plane)] = region.contains(fluid.position(i)) ? 1 : 0;
   return inside;
 }
 

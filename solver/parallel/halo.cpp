@@ -85,8 +85,7 @@ void Halo<D>::pack_fluid(FluidParticles<D>& fluid, const Residents<D>& residents
     for (std::size_t n = 0; n < images_.size(); ++n) residents.select(fluid, n, selected_[n]);
   } else {
     for (std::size_t i = 0; i < fluid.size(); ++i) {
-      Vec<D, double> x;
-      for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];
+      Vec<D, double> x = fluid.position(i);
       if (interior_.contains(x)) continue;
       x = in_frame(x);
       for (int axis = 0; axis < D; ++axis) fluid.x(axis)[i] = x[axis];

@@ -72,7 +72,7 @@ class KeptLists {
   }
 
   struct Centre {
-    std::uint32_t particle, end;  // its place, and where its blocks end
+    std::uint32_t particle, end;  // the place of the centre, and where its blocks end
   };
   /// Calls visit(centres, base) for all centres, some at once. Block n of theirs, n >= base, has its squared distances
   /// in `squares`, entry n - base.
@@ -83,7 +83,7 @@ class KeptLists {
     auto named = named_.begin();
     for (std::size_t first = 0; first < centres_.size();) {
       std::size_t last = first + 1;
-      while (last < centres_.size() && centres_[last].end - base <= full) ++last;
+      while (last < centres_.size() && centres_[last].end - base <= detail::blocks_at_once) ++last;
       const std::span chunk = std::span(centres_).subspan(first, last - first);
       const std::size_t room = (chunk.back().end - base + detail::roots_ahead) * lane_count;
       if (squares.size() < room) squares.resize(room);
@@ -98,7 +98,6 @@ class KeptLists {
   std::span<const std::uint32_t> blocks() const { return blocks_; }
 
  private:
-  static constexpr std::size_t full = 512 / lane_count;  // blocks: their distances stay in the nearest cache
   struct NamedLanes {
     std::uint32_t entry;  // in blocks_
     std::uint8_t lanes;

@@ -71,9 +71,11 @@ MAPPM_INLINE void pair_block(const Numbers& numbers, PairBlock<D, Numbers>& bloc
 }
 
 inline constexpr std::size_t roots_ahead = 4;
+inline constexpr std::size_t blocks_at_once = 512 / lane_count;  // their distances stay in the nearest cache
 
 /// Calls visit(block, distances) for the blocks of each centre, between begin(particle) and end(particle). Of block n,
-/// n < centres.back().end, squares(n) are the squared distances; they become distances. Some more are read behind it.
+/// from the given one to centres.back().end, squares(n) are the squared distances. They become distances, and so do
+/// `roots_ahead` squares behind the last.
 template <class RealLanes, class Centres, class Squares, class Begin, class Visit, class End>
 MAPPM_INLINE void for_each_block(const Centres& centres, std::size_t n, const std::uint32_t* blocks, Squares&& squares,
                                  Begin&& begin, Visit&& visit, End&& end) {
@@ -116,9 +118,7 @@ class PartnerLists {
     centres_.clear();
     size_ = 0;
   }
-  bool is_full() const { return size_ >= full; }
-  /// Number of blocks: those that hold a partner, and after `measure` those within the cutoff.
-  std::size_t size() const { return size_; }
+  bool is_full() const { return size_ >= detail::blocks_at_once; }
 
   /// Adds a particle with its ranges of places: range(n) for n < count.
   template <class RangeOf>
@@ -213,8 +213,7 @@ class PartnerLists {
   }
 
  private:
-  static constexpr std::uint32_t written = 8;            // blocks at once: longer ranges are rare
-  static constexpr std::size_t full = 512 / lane_count;  // blocks: their distances stay in the nearest cache
+  static constexpr std::uint32_t written = 8;  // blocks at once: longer ranges are rare
   struct Centre {
     std::uint32_t particle, end;  // and where its blocks end
     Places x;

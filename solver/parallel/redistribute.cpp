@@ -39,9 +39,7 @@ void redistribute(const Model<D>& model, const Domains<D>& domains, const Commun
   std::vector<int> owner(fluid.size());
   std::vector<std::uint64_t> count(out.size(), 0);
   for (std::size_t i = 0; i < fluid.size(); ++i) {
-    Vec<D, double> x;
-    for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];
-    owner[i] = domains.owner(x);
+    owner[i] = domains.owner(fluid.position(i));
     ++count[static_cast<std::size_t>(owner[i])];
   }
   constexpr std::size_t particle_bytes = sizeof(double) * (1 + FluidParticles<D>::field_count);

@@ -20,17 +20,6 @@ Region<D> widened(const Model<D>& model, Region<D> region, double margin) {
   return region;
 }
 
-namespace {
-
-template <int D>
-Vec<D, double> place_of(const FluidParticles<D>& fluid, std::size_t i) {
-  Vec<D, double> x;
-  for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[i];
-  return x;
-}
-
-}  // namespace
-
 template <int D>
 Residents<D>::Residents(const Model<D>& model, const Region<D>& region, const std::vector<Region<D>>& others)
     : model_(model),
@@ -52,7 +41,7 @@ void Residents<D>::settle(const FluidParticles<D>& fluid, bool single_step) {
   owned_.clear();
   std::vector<std::uint32_t> ghosts;
   for (std::size_t i = 0; i < fluid.size(); ++i) {
-    const Vec<D, double> x = place_of(fluid, i);
+    const Vec<D, double> x = fluid.position(i);
     if (needless_.contains(x)) continue;
     const auto place = static_cast<std::uint32_t>(i);
     if (!may_own_.contains(x)) {
@@ -72,6 +61,7 @@ void Residents<D>::settle(const FluidParticles<D>& fluid, bool single_step) {
   }
   near_ = places_.size();
   places_.insert(places_.end(), ghosts.begin(), ghosts.end());
+  steps_ = 1;
   travelled_ = single_step ? skin : 0.0;
   farthest_ = 0.0;
   staying_ = true;
@@ -90,7 +80,7 @@ void Residents<D>::settle(const FluidParticles<D>& fluid, bool single_step) {
 template <int D>
 void Residents<D>::select(const FluidParticles<D>& fluid, std::size_t n, std::vector<std::uint32_t>& chosen) const {
   for (const auto& [place, near] : candidates_[n])
-    if ((near == none || owned_[near] != 0) && others_[n].contains(place_of(fluid, place))) chosen.push_back(place);
+    if ((near == none || owned_[near] != 0) && others_[n].contains(fluid.position(place))) chosen.push_back(place);
 }
 
 /// Where the search for an id begins; several images of one PP follow each other.
@@ -115,8 +105,9 @@ bool Residents<D>::refresh(FluidParticles<D>& fluid, std::span<BufferReader> rea
   travelled_ += farthest_;
   farthest_ = 0.0;
   for (std::size_t n = 0; n < places_.size(); ++n)
-    if (up_to_date_[n] == 0 && noticed_.contains(place_of(fluid, places_[n]))) return false;
-  for (std::size_t n = 0; n < near_; ++n) owned_[n] = region_.contains(place_of(fluid, places_[n])) ? 1 : 0;
+    if (up_to_date_[n] == 0 && noticed_.contains(fluid.position(places_[n]))) return false;
+  ++steps_;
+  for (std::size_t n = 0; n < near_; ++n) owned_[n] = region_.contains(fluid.position(places_[n])) ? 1 : 0;
   return true;
 }
 
@@ -140,7 +131,7 @@ bool Residents<D>::refresh(FluidParticles<D>& fluid, BufferReader& reader, std::
     double square = 0.0;
     const auto is_that = [&](std::uint32_t n) {
       if (fluid.id[places_[n]] != id) return false;
-      const Vec<D, double> moved = separation(model_.pair, x - place_of(fluid, places_[n]));
+      const Vec<D, double> moved = separation(model_.pair, x - fluid.position(places_[n]));
       square = dot(moved, moved);
       return square <= skin * skin;  // another image is a box away
     };
@@ -170,6 +161,7 @@ template <int D>
 void Residents<D>::leave(FluidParticles<D>& fluid) {
   if (!staying_) return;
   staying_ = false;
+  short_stays_ = steps_ < worthwhile ? short_stays_ + 1 : 0;
   std::vector<std::uint32_t> near_gone, gone;  // in rising order
   for (std::size_t n = 0; n < near_; ++n)
     if (owned_[n] == 0) near_gone.push_back(places_[n]);
@@ -178,6 +170,10 @@ void Residents<D>::leave(FluidParticles<D>& fluid) {
              std::back_inserter(gone));
   std::size_t kept = 0, from = 0;
   const auto keep_until = [&](std::size_t end) {
+    if (kept == from) {
+      kept = end;
+      return;
+    }
     const auto move = [&](auto& values) {
       std::copy(values.begin() + static_cast<std::ptrdiff_t>(from), values.begin() + static_cast<std::ptrdiff_t>(end),
                 values.begin() + static_cast<std::ptrdiff_t>(kept));

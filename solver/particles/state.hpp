@@ -37,6 +37,12 @@ struct FluidParticles {
   Column<double>& density() { return field[2 * D]; }
   const Column<double>& density() const { return field[2 * D]; }
 
+  Vec<D, double> position(std::size_t i) const {
+    Vec<D, double> position;
+    for (int axis = 0; axis < D; ++axis) position[axis] = x(axis)[i];
+    return position;
+  }
+
   std::size_t size() const { return id.size(); }
   void resize(std::size_t count) {
     reserve_tightly(id, count);

@@ -96,7 +96,7 @@ class SinglePairs {
     return lanes_of<std::int32_t>(to_fixed(x * Lanes(1.0 / place_[axis])));
   }
   MAPPM_INLINE static FloatLanes apart(const Int32Lanes& a, const Int32Lanes& b) { return lanes_of<float>(a - b); }
-  static std::int32_t far_from(std::int32_t place) {  // half a window
+  static std::int32_t far_from(std::int32_t place) {  // half a window, at least 4 rcut
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(place) + (std::uint32_t{1} << 31));
   }
   /// Sums keep their momentum exactly: a quantum here is a whole number of those of the state.

@@ -259,6 +259,29 @@ TEST(Halo, owned_ghosts_and_copies_are_those_of_brute_force_in_space) {
   expect_brute_force_halos<3>(testing::spheres());
 }
 
+/// Of PPs that do not move the whole margin is held.
+template <int D>
+void expect_whole_margin(const std::string& scene) {
+  const Built<D> built(scene);
+  const State<D> global = built.state();
+  for (const std::string& grid : testing::all_grids<D>(world().size())) {
+    const Domains<D> domains = make_domains<D>(built.model, world().size(), grid);
+    const Region<D> region = domains.region(world().rank());
+    Halo<D> halo(built.model, domains, world());
+    Residents<D> residents(built.model, region, halo.needed_by_others());
+    State<D> state = share_of(global, global, region);
+    std::vector<Solid<D>> copies;
+    Stopwatch watch;
+    halo.exchange(state, residents, copies, watch);
+    EXPECT_EQ(rows(state.fluid), expected_rows(global, widened(built.model, region, 1.0 + skin))) << grid;
+  }
+}
+
+TEST(Halo, ghosts_lie_as_far_out_as_lists_reach) {
+  expect_whole_margin<2>(testing::dense_discs());
+  expect_whole_margin<3>(testing::spheres());
+}
+
 TEST(Halo, positions_do_not_drift_through_many_exchanges) {
   const Built<2> built(testing::dense_discs());
   const Domains<2> domains = make_domains<2>(built.model, world().size(), "");

@@ -124,9 +124,9 @@ TEST_F(ResidentsTest, a_stay_ends_when_the_own_particles_have_moved_too_far) {
   settle({{1, 6.0}, {4, 3.5}});
   move(0, 6.0 + 0.3 * skin);
   ASSERT_TRUE(receive({{4, 3.5}}));
-  move(0, 6.0 + 0.1 * skin);  // back: what counts is the sum
+  move(0, 6.0 + 0.15 * skin);  // back: what counts is the sum
   ASSERT_TRUE(receive({{4, 3.5}}));
-  move(0, 6.0 + 0.2 * skin);
+  move(0, 6.0 + 0.25 * skin);
   EXPECT_FALSE(residents_.lasts());
 }
 
@@ -171,6 +171,20 @@ TEST_F(ResidentsTest, lists_pay_where_three_steps_like_the_last_fit_into_a_stay)
   EXPECT_TRUE(residents_.pays());
   move(0, 6.0 + 0.5 * skin);
   EXPECT_FALSE(residents_.pays());
+}
+
+TEST_F(ResidentsTest, lists_do_not_pay_where_something_else_ends_each_stay_at_once) {
+  settle({{1, 6.0}});
+  std::vector<int> tried;
+  for (int n = 0; n < 40; ++n) {
+    if (residents_.pays()) tried.push_back(n);
+    residents_.leave(fluid_);
+    residents_.settle(fluid_);
+  }
+  EXPECT_EQ(tried, (std::vector<int>{0, 1, 16, 32}));
+  for (int step = 0; step < 2; ++step) EXPECT_TRUE(receive({}));  // a stay of three steps
+  residents_.leave(fluid_);
+  EXPECT_TRUE(residents_.pays());
 }
 
 }  // namespace
