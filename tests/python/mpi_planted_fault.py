@@ -21,22 +21,23 @@ SOURCES = ("CMakeLists.txt", "CMakePresets.json", "cmake", "solver", "tests", "b
 # From the 18th exchange on, ghosts whose id leaves 5 on division by 7 are missing across the lower face of each domain.
 DROPPED = (
     "solver/parallel/halo.cpp",
-    ("  for (auto& chosen : selected_) chosen.clear();\n",
-     "  static int exchanges = 0;\n  ++exchanges;\n  for (auto& chosen : selected_) chosen.clear();\n"),
     (
-        "    for (std::size_t n = 0; n < images_.size(); ++n)\n      if (image_reach_[n].contains(x))",
-        "    const bool dropped = exchanges >= 18 && fluid.id[i] % 7 == 5;\n"
-        "    for (std::size_t n = 0; n < images_.size(); ++n)\n"
-        "      if (!(dropped && n == 1 && !images_[n].region.contains(x)) && image_reach_[n].contains(x))",
+        "  for (std::size_t partner = 0; partner < partners_.size(); ++partner) {\n    Buffer& buffer = out_[partner];\n    std::uint64_t count",
+        "  static int exchanges = 0;\n"
+        "  if (++exchanges >= 18)\n"
+        "    std::erase_if(selected_[1], [&](std::uint32_t i) {\n"
+        "      return fluid.id[i] % 7 == 5 && !images_[1].region.contains(fluid.position(i));\n"
+        "    });\n"
+        "  for (std::size_t partner = 0; partner < partners_.size(); ++partner) {\n    Buffer& buffer = out_[partner];\n    std::uint64_t count",
     ),
 )
 # In the step from 11 to 12 some PPs gain one quantum of velocity along y that nobody gave them.
 KICKED = (
     "solver/parallel/engine.cpp",
     (
-        "  fluid.resize(kept);\n",
-        "  fluid.resize(kept);\n"
-        "  for (std::size_t k = 0; k < kept; ++k)\n"
+        "  residents_->moved(std::sqrt(square));\n",
+        "  residents_->moved(std::sqrt(square));\n"
+        "  for (std::size_t k = 0; k < fluid.size(); ++k)\n"
         "    if (state_.step == 11 && fluid.id[k] % 97 == 5) fluid.v(1)[k] += velocity_quantum;\n",
     ),
 )
