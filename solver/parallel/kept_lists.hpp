@@ -2,7 +2,6 @@
 // anew.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>

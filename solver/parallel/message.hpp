@@ -9,12 +9,17 @@
 
 namespace mappm {
 
+/// Room for so many more bytes at the end of a buffer; returns where it begins.
+inline std::byte* extend(Buffer& buffer, std::size_t bytes) {
+  const std::size_t at = buffer.size();
+  buffer.resize(at + bytes);
+  return buffer.data() + at;
+}
+
 template <class T>
 void put(Buffer& buffer, const T& value) {
   static_assert(std::is_trivially_copyable_v<T>);
-  const std::size_t at = buffer.size();
-  buffer.resize(at + sizeof(T));
-  std::memcpy(buffer.data() + at, &value, sizeof(T));
+  std::memcpy(extend(buffer, sizeof(T)), &value, sizeof(T));
 }
 
 template <class T>
@@ -22,16 +27,7 @@ void put(Buffer& buffer, const std::vector<T>& values) {
   static_assert(std::is_trivially_copyable_v<T>);
   put(buffer, values.size());
   if (values.empty()) return;
-  const std::size_t at = buffer.size();
-  buffer.resize(at + values.size() * sizeof(T));
-  std::memcpy(buffer.data() + at, values.data(), values.size() * sizeof(T));
-}
-
-/// Room for so many more bytes at the end of a buffer; returns where it begins.
-inline std::byte* extend(Buffer& buffer, std::size_t bytes) {
-  const std::size_t at = buffer.size();
-  buffer.resize(at + bytes);
-  return buffer.data() + at;
+  std::memcpy(extend(buffer, values.size() * sizeof(T)), values.data(), values.size() * sizeof(T));
 }
 
 /// Writes a value at an address of bytes, and moves that behind it.
