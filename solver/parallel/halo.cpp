@@ -57,17 +57,22 @@ Vec<D, double> Halo<D>::in_frame(Vec<D, double> x) const {
 
 template <int D>
 bool Halo<D>::exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch) {
+  // Alone, a process ends its stay when it must.
+  const std::uint64_t plan = traffic_.neighbours > 0 ? residents.plan(state.step) : Residents<D>::never;
   if (!residents.lasts()) residents.leave(state.fluid);
+  for (Buffer& buffer : out_) put(buffer, plan);
   pack_fluid(state.fluid, residents);
   watch.end(Phase::exchange);
   pack_solids(state.solids);
   watch.end(Phase::copies);
   swap_messages();
   std::vector<BufferReader> readers(in_.begin(), in_.end());
-  const bool stay = residents.staying() && residents.refresh(state.fluid, readers);
+  for (BufferReader& reader : readers) residents.fall_in(state.step, reader.get<std::uint64_t>());
+  const std::vector<BufferReader> of_fluid = readers;
+  const bool stay = residents.lasts() && residents.refresh(state.fluid, readers);
   if (!stay) {
     residents.leave(state.fluid);
-    readers = {in_.begin(), in_.end()};
+    readers = of_fluid;
     for (BufferReader& reader : readers) unpack_fluid(reader, state.fluid);
   }
   watch.end(Phase::exchange);
@@ -76,8 +81,8 @@ bool Halo<D>::exchange(State<D>& state, Residents<D>& residents, std::vector<Sol
   return stay;
 }
 
-/// Message to each partner: number of PPs, then their ids, then field by field. PPs near the border of the region, or
-/// beyond it, are moved to its frame, where those that stay are already.
+/// Message to each partner, behind the plan: number of PPs, then their ids, then field by field. PPs near the border of
+/// the region, or beyond it, are moved to its frame, where those that stay are already.
 template <int D>
 void Halo<D>::pack_fluid(FluidParticles<D>& fluid, const Residents<D>& residents) {
   for (auto& chosen : selected_) chosen.clear();

@@ -64,6 +64,8 @@ void Residents<D>::settle(const FluidParticles<D>& fluid, bool single_step) {
   steps_ = 1;
   travelled_ = single_step ? skin : 0.0;
   farthest_ = 0.0;
+  end_ = never;
+  ending_ = false;
   staying_ = true;
   if (single_step) return;
   up_to_date_.assign(places_.size(), 0);
@@ -75,6 +77,28 @@ void Residents<D>::settle(const FluidParticles<D>& fluid, bool single_step) {
   }
   for (auto& sequence : sequences_) sequence.clear();
   stood_.assign(places_.size(), 0);
+}
+
+template <int D>
+std::uint64_t Residents<D>::plan(std::uint64_t step) {
+  if (!staying_ || travelled_ >= skin) return never;  // those who make lists in every step would have all do so
+  constexpr double doubt = 0.1;                       // steps by which the others should not be surprised
+  const double left = (allowance - used()) * steps_ / used();
+  if (left < 0.0)
+    end_ = step;
+  else if (2.0 * used() > allowance)
+    end_ = std::min(end_, step + 1 + static_cast<std::uint64_t>(std::max(0.0, left - doubt)));
+  ending_ = end_ <= step;
+  return end_;
+}
+
+template <int D>
+void Residents<D>::fall_in(std::uint64_t step, std::uint64_t plan) {
+  if (!lasts() || plan >= end_) return;
+  const double steps = steps_ + static_cast<double>(plan - step);  // of the stay by then
+  if (steps < worthwhile || 2.0 * used() * steps < allowance * steps_) return;
+  end_ = plan;
+  ending_ = end_ <= step;
 }
 
 template <int D>

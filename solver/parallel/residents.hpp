@@ -9,6 +9,11 @@
 //   - a PP that was not here comes within rcut + skin / 2 of the region: it has moved farther than that, or came from
 //     beyond a neighbour, who sends it on only in the step after;
 //   - one that was here, and nearer than that, is sent no more: it has left all at once.
+//
+// It can end at any earlier step, and does where a neighbour's does. Making lists takes about as long as a step, and
+// the neighbours wait for whoever makes them: so all do best to make theirs in the same steps. Each message says in
+// which step the sender's stay will end as far as it sees; who hears that falls in with it, and says so in its own
+// messages.
 #pragma once
 
 #include <cstdint>
@@ -37,8 +42,13 @@ class Residents {
   Residents(const Model<D>& model, const Region<D>& region, const std::vector<Region<D>>& others);
 
   bool staying() const { return staying_; }
-  /// False where the own PPs have moved so far that the stay must end now.
-  bool lasts() const { return staying_ && travelled_ + farthest_ <= allowance; }
+  /// False where the own PPs have moved so far that the stay must end now, or where that is the plan.
+  bool lasts() const { return staying_ && !ending_ && used() <= allowance; }
+  /// For the neighbours, at the start of a step: in which step this stay ends, `never` if that is not yet to be seen.
+  std::uint64_t plan(std::uint64_t step);
+  /// Takes over the plan of a neighbour unless that makes this stay shorter by more than half, or not worth its lists.
+  void fall_in(std::uint64_t step, std::uint64_t plan);
+  static constexpr std::uint64_t never = ~std::uint64_t{0};
   /// Whether lists that are kept will pay in a stay that begins now: whether it can last for some steps like the last,
   /// and stays did of late, whatever ended them. Where they did not, it is tried again from time to time.
   bool pays() const {
@@ -67,6 +77,7 @@ class Residents {
   static constexpr std::uint32_t none = ~std::uint32_t{0};
   static constexpr double allowance = 0.5 * skin - 1e-6;  // less what distances and places may be off, rcut
   static constexpr int worthwhile = 3;                    // steps
+  double used() const { return travelled_ + farthest_; }
   const std::uint32_t* slot_of(std::uint64_t id) const;
   const std::uint32_t* next(const std::uint32_t* slot) const;
   bool refresh(FluidParticles<D>& fluid, BufferReader& reader, std::vector<std::uint32_t>& sequence);
@@ -78,6 +89,8 @@ class Residents {
   int steps_ = 0, short_stays_ = 0;  // of this stay; stays in a row that were shorter than worthwhile
   // Displacements, rcut: since the start of the stay at most, in the last step, and in that of the own PPs alone.
   double travelled_ = 0.0, farthest_ = 0.0, last_farthest_ = 0.0;
+  std::uint64_t end_ = never;  // the step planned
+  bool ending_ = false;        // it has come
   struct Candidate {
     std::uint32_t place, near;  // `none` where it is owned throughout
   };

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -162,6 +163,54 @@ TEST_F(ResidentsTest, a_stay_of_a_single_step_keeps_what_is_owned) {
   residents_.settle(fluid_, true);
   EXPECT_FALSE(residents_.lasts());
   EXPECT_EQ(owned_after_leaving(), (Ids{1, 2}));
+}
+
+TEST_F(ResidentsTest, the_end_of_a_stay_is_told_ahead_in_its_second_half) {
+  settle({{1, 6.0}});
+  double x = 6.0;
+  const auto move_on = [&] { move(0, x += 0.105 * 0.5 * skin); };  // nine such steps fit in
+  for (std::uint64_t step = 1; step < 5; ++step) {
+    move_on();
+    EXPECT_EQ(residents_.plan(step), residents_.never) << step;
+    ASSERT_TRUE(receive({}));
+  }
+  for (std::uint64_t step = 5; step < 10; ++step) {
+    move_on();
+    EXPECT_EQ(residents_.plan(step), 10u) << step;
+    ASSERT_TRUE(receive({}));
+  }
+  move_on();
+  EXPECT_EQ(residents_.plan(10), 10u);
+  EXPECT_FALSE(residents_.lasts());
+}
+
+TEST_F(ResidentsTest, a_stay_ends_with_that_of_a_neighbour_where_it_has_lasted_half_its_time) {
+  const auto end_of_neighbours = [&](std::uint64_t plan, double move_of_a_step) {
+    settle({{1, 6.0}});
+    double x = 6.0;
+    std::uint64_t step = 0;
+    do {
+      move(0, x += move_of_a_step * 0.5 * skin);
+      residents_.plan(++step);
+      residents_.fall_in(step, std::max(step, plan));
+    } while (residents_.lasts() && receive({}));
+    residents_.leave(fluid_);
+    fluid_ = {};
+    return step;
+  };
+  EXPECT_EQ(end_of_neighbours(7, 0.105), 7u);
+  EXPECT_EQ(end_of_neighbours(5, 0.105), 5u);
+  EXPECT_EQ(end_of_neighbours(12, 0.105), 10u);
+  EXPECT_EQ(end_of_neighbours(3, 0.105), 5u);  // of those who make lists more often every second time
+  EXPECT_EQ(end_of_neighbours(2, 0.225), 3u);  // and for less than three steps they do not pay
+}
+
+TEST_F(ResidentsTest, lists_of_a_single_step_are_nobody_elses_concern) {
+  settle({{1, 6.0}});
+  residents_.leave(fluid_);
+  residents_.settle(fluid_, true);
+  move(0, 6.0 + 0.5 * skin);
+  EXPECT_EQ(residents_.plan(1), residents_.never);
 }
 
 TEST_F(ResidentsTest, lists_pay_where_three_steps_like_the_last_fit_into_a_stay) {
