@@ -35,7 +35,7 @@ void reduce(std::span<T> values, MPI_Datatype type, MPI_Op operation) {
 
 struct Communicator::Impl {
   int rank = 0, size = 1;
-  std::vector<MPI_Request> requests;
+  std::vector<MPI_Request> requests;  // of messages being sent
 };
 
 Communicator::Communicator(int& argc, char**& argv) : impl_(std::make_unique<Impl>()) {
@@ -109,18 +109,24 @@ std::int64_t Communicator::hdf5_file_access() const {
 }
 
 void Communicator::exchange(std::span<const int> partners, std::span<Buffer> out, std::span<Buffer> in) const {
-  auto& requests = impl_->requests;
-  requests.clear();
+  send(partners, out);
+  receive(partners, out, in);
+  finish_sending();
+}
+
+void Communicator::send(std::span<const int> partners, std::span<const Buffer> out) const {
+  for (std::size_t n = 0; n < partners.size(); ++n)
+    if (partners[n] != impl_->rank)
+      MPI_Isend(out[n].data(), count_of(out[n]), MPI_BYTE, partners[n], exchange_tag, MPI_COMM_WORLD,
+                &impl_->requests.emplace_back());
+}
+
+void Communicator::receive(std::span<const int> partners, std::span<Buffer> out, std::span<Buffer> in) const {
   for (std::size_t n = 0; n < partners.size(); ++n) {
     if (partners[n] == impl_->rank) {
       std::swap(out[n], in[n]);
       continue;
     }
-    MPI_Isend(out[n].data(), count_of(out[n]), MPI_BYTE, partners[n], exchange_tag, MPI_COMM_WORLD,
-              &requests.emplace_back());
-  }
-  for (std::size_t n = 0; n < partners.size(); ++n) {
-    if (partners[n] == impl_->rank) continue;
     MPI_Message message;
     MPI_Status status;
     MPI_Mprobe(partners[n], exchange_tag, MPI_COMM_WORLD, &message, &status);
@@ -129,7 +135,11 @@ void Communicator::exchange(std::span<const int> partners, std::span<Buffer> out
     in[n].resize(static_cast<std::size_t>(bytes));
     MPI_Mrecv(in[n].data(), bytes, MPI_BYTE, &message, MPI_STATUS_IGNORE);
   }
-  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+}
+
+void Communicator::finish_sending() const {
+  MPI_Waitall(static_cast<int>(impl_->requests.size()), impl_->requests.data(), MPI_STATUSES_IGNORE);
+  impl_->requests.clear();
 }
 
 std::vector<Buffer> Communicator::exchange_all(std::vector<Buffer>&& out) const {

@@ -107,7 +107,12 @@ void ParallelEngine<D>::step() {
   if (options_.rebalance > 0 && state_.step > 0 && state_.step % options_.rebalance == 0) rebalance();
   watch_.start();
   if (traced_particle_.has_value() || faces_due()) state();  // what explains the pairs wants them in their cells
-  const bool stay = halo_->exchange(state_, *residents_, copies_, watch_);
+  halo_->begin_exchange(state_, *residents_, watch_);
+  if (residents_->staying() && overlaps()) {  // what needs no message, while they are on their way
+    std::visit([&](auto& pass) { pass.sum_inner(state_.fluid, grid_); }, pass_);
+    watch_.end(Phase::pairs);
+  }
+  const bool stay = halo_->end_exchange(state_, *residents_, copies_, watch_);
   const bool single_step = !stay && !residents_->pays();
   place_solids();
   watch_.end(Phase::solids);
@@ -122,10 +127,20 @@ void ParallelEngine<D>::step() {
     if (single_step) {
       std::visit([&](auto& pass) { pass.sum_once(state_.fluid, grid_); }, pass_);
     } else {
-      if (!stay)
-        std::visit([&](auto& pass) { pass.list(state_.fluid, grid_, residents_->may_own(), 1.0 + skin); }, pass_);
-      watch_.end(Phase::lists);
-      std::visit([&](auto& pass) { pass.sum(state_.fluid, grid_); }, pass_);
+      std::optional<std::span<const std::uint32_t>> later;
+      if (overlaps()) later = residents_->foreign();
+      std::visit(
+          [&](auto& pass) {
+            if (!stay) {
+              pass.list(state_.fluid, grid_, residents_->may_own(), 1.0 + skin, later);
+              watch_.end(Phase::lists);
+            }
+            if (stay && later)
+              pass.sum_rest(state_.fluid, grid_);
+            else
+              pass.sum(state_.fluid, grid_);
+          },
+          pass_);
     }
     watch_.end(Phase::pairs);
     std::visit([&](auto& pass) { pass.add_frozen(grid_, solids_.frozen, frozen_sums_); }, pass_);

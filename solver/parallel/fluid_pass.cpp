@@ -99,8 +99,11 @@ void FluidPass<D, Numbers>::sum_once(FluidParticles<D>& fluid, const CellGrid<D>
 
 template <int D, class Numbers>
 void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region,
-                                 double reach) {
+                                 double reach, std::optional<std::span<const std::uint32_t>> later) {
   prepare(fluid, grid);
+  known_later_.assign(blocks_.place_count() / lane_count, later ? 0 : 1);
+  if (later)
+    for (const std::uint32_t i : *later) known_later_[blocks_.place(i) / lane_count] = 1;
   const auto square = static_cast<typename Numbers::Real>(reach * reach);
   const std::vector<std::uint8_t> inside = places_in(fluid, grid, region);  // of each place
   const auto reaches_inside = [&](std::uint32_t block) {
@@ -109,14 +112,16 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
   };
   const std::vector<std::uint8_t> wide = wide_blocks(fluid, grid);
   const int height = band_height(grid);
-  kept_.resize(static_cast<std::size_t>((grid.count(D - 1) + height - 1) / height));
+  kept_.resize(parts * static_cast<std::size_t>((grid.count(D - 1) + height - 1) / height));
   for_each_band(grid, [&](int first, int last, Search& search, std::size_t band) {
-    KeptLists<D, Numbers>& kept = kept_[band];
-    kept.clear();
+    for (const Part part : {inner, rest}) kept_[parts * band + part].clear();
     for_each_row(grid, first, last, [&](const Vec<D, int>& row) {
       for_each_list(fluid, grid, row, true, search, [&](Lists& lists) {
         lists.template measure<false>(numbers_, blocks_.data(), square);
         lists.for_each_centre([&](std::uint32_t place, std::span<const std::uint32_t> blocks, const auto& lanes) {
+          const auto is_later = [&](std::uint32_t block) { return known_later_[block] != 0; };
+          const Part part = is_later(place / lane_count) || std::ranges::any_of(blocks, is_later) ? rest : inner;
+          KeptLists<D, Numbers>& kept = kept_[parts * band + part];
           const auto is_wide = [&](std::uint32_t block) { return !wide.empty() && wide[block] != 0; };
           if (inside[place] != 0)
             kept.add(
@@ -130,11 +135,12 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
 }
 
 template <int D, class Numbers>
-void FluidPass<D, Numbers>::sum(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
-  blocks_.fill(model_, numbers_, fluid, grid);
+void FluidPass<D, Numbers>::sum_lists_of(Part part, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
+  blocks_.fill(model_, numbers_, fluid, grid,
+               [&](std::uint32_t block) { return (known_later_[block] != 0) == (part == rest); });
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     for_each_band(grid, [&](int, int, Search& search, std::size_t band) {
-      kept_[band].template sum<Kernel, transport>(numbers_, blocks_, search.squares);
+      kept_[parts * band + part].template sum<Kernel, transport>(numbers_, blocks_, search.squares);
     });
   });
 }

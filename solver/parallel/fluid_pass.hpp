@@ -28,11 +28,19 @@ class FluidPass {
 
   /// Finds the pairs of which one PP lies in `region`, up to a distance of `reach` (rcut, at least 1): `sum` finds all
   /// within rcut until two PPs have come nearer by the rest, or one from outside the region has entered the part that
-  /// matters. `fluid` is in the order of `grid`, whose cells are fit to that reach.
-  void list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region, double reach);
+  /// matters. `fluid` is in the order of `grid`, whose cells are fit to that reach. `later`: those PPs of which nothing
+  /// will be known before `sum_rest`; without it nothing will be of any.
+  void list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region, double reach,
+            std::optional<std::span<const std::uint32_t>> later = {});
   /// After `list`, with the PPs in the same order: sums over all PPs near each PP of the region; sums of others are
   /// partial and meaningless.
-  void sum(FluidParticles<D>& fluid, const CellGrid<D>& grid);
+  void sum(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
+    sum_inner(fluid, grid);
+    sum_rest(fluid, grid);
+  }
+  /// The same in two parts: first the pairs of PPs far from all those of `later`, then the others.
+  void sum_inner(FluidParticles<D>& fluid, const CellGrid<D>& grid) { sum_lists_of(inner, fluid, grid); }
+  void sum_rest(FluidParticles<D>& fluid, const CellGrid<D>& grid) { sum_lists_of(rest, fluid, grid); }
   /// Both in one, for PPs that will not keep their order.
   void sum_once(FluidParticles<D>& fluid, const CellGrid<D>& grid);
   /// After a sum: adds the pairs of PPs and FPs. `frozen` are all FPs in reach; `frozen_sums[k]` becomes the sum over
@@ -65,6 +73,7 @@ class FluidPass {
   const std::vector<KeptLists<D, Numbers>>& kept() const { return kept_; }
 
  private:
+  enum Part : std::size_t { inner, rest, parts };
   using Centre = PairCentre<D, Numbers>;
   using Sums = PairResult<D, typename Numbers::Sum>;
   /// What a thread searches with.
@@ -90,6 +99,7 @@ class FluidPass {
   template <class Kernel, bool transport, bool lanes_first, class Beta>
   PairSums sums_of_pair(const Centre& centre, std::uint32_t place, const Beta& beta) const;
   void prepare(FluidParticles<D>& fluid, const CellGrid<D>& grid);
+  void sum_lists_of(Part part, FluidParticles<D>& fluid, const CellGrid<D>& grid);
   std::vector<std::uint8_t> wide_blocks(const FluidParticles<D>& fluid, const CellGrid<D>& grid) const;
   std::vector<std::uint8_t> places_in(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
                                       const Region<D>& region) const;
@@ -103,7 +113,8 @@ class FluidPass {
   std::vector<Vec<D, int>> half_rows_, all_rows_;
   std::vector<Search> searches_;  // of the threads
   PairBlocks<D, Numbers> blocks_;
-  std::vector<KeptLists<D, Numbers>> kept_;  // of each band
+  std::vector<KeptLists<D, Numbers>> kept_;  // of each band one for each part
+  std::vector<std::uint8_t> known_later_;    // of each block: whether it holds a PP of `later`
 };
 
 /// The pass in the precision of the model.

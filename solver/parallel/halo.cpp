@@ -33,15 +33,21 @@ Halo<D>::Halo(const Model<D>& model, const Domains<D>& domains, const Communicat
   }
 }
 
+/// For new ones: what was sent before has arrived by then.
 template <int D>
-void Halo<D>::swap_messages() {
+void Halo<D>::clear_messages() {
+  communicator_.finish_sending();
+  for (Buffer& buffer : out_) buffer.clear();
+}
+
+template <int D>
+void Halo<D>::send_messages() {
   for (std::size_t n = 0; n < partners_.size(); ++n) {
     if (partners_[n] == communicator_.rank()) continue;
     ++traffic_.messages;
     traffic_.bytes += out_[n].size();
   }
-  communicator_.exchange(partners_, out_, in_);
-  for (Buffer& buffer : out_) buffer.clear();
+  communicator_.send(partners_, out_);
 }
 
 /// The periodic image of a position that is nearest to the middle of the region.
@@ -56,16 +62,23 @@ Vec<D, double> Halo<D>::in_frame(Vec<D, double> x) const {
 }
 
 template <int D>
-bool Halo<D>::exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch) {
+void Halo<D>::begin_exchange(State<D>& state, Residents<D>& residents, Stopwatch& watch) {
   // Alone, a process ends its stay when it must.
   const std::uint64_t plan = traffic_.neighbours > 0 ? residents.plan(state.step) : Residents<D>::never;
   if (!residents.lasts()) residents.leave(state.fluid);
+  clear_messages();
   for (Buffer& buffer : out_) put(buffer, plan);
   pack_fluid(state.fluid, residents);
   watch.end(Phase::exchange);
   pack_solids(state.solids);
   watch.end(Phase::copies);
-  swap_messages();
+  send_messages();
+  watch.end(Phase::exchange);
+}
+
+template <int D>
+bool Halo<D>::end_exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch) {
+  communicator_.receive(partners_, out_, in_);
   std::vector<BufferReader> readers(in_.begin(), in_.end());
   for (BufferReader& reader : readers) residents.fall_in(state.step, reader.get<std::uint64_t>());
   const std::vector<BufferReader> of_fluid = readers;
@@ -187,6 +200,7 @@ void Halo<D>::pack_solid(const Solid<D>& solid, std::size_t image) {
 template <int D>
 std::vector<HomeReport<D>> Halo<D>::send_home(const std::vector<Solid<D>>& copies,
                                               std::vector<HomeReport<D>>&& reports) {
+  clear_messages();
   for (std::size_t c = 0; c < copies.size(); ++c) {
     if (reports[c].index.empty()) continue;
     const int owner = domains_.owner(copies[c].x);
@@ -197,7 +211,8 @@ std::vector<HomeReport<D>> Halo<D>::send_home(const std::vector<Solid<D>>& copie
     put(buffer, reports[c].index);
     put(buffer, reports[c].density);
   }
-  swap_messages();
+  send_messages();
+  communicator_.receive(partners_, out_, in_);
   std::vector<HomeReport<D>> received;
   for (const Buffer& buffer : in_) {
     BufferReader reader(buffer);

@@ -32,6 +32,9 @@ template <int D>
 class Halo {
  public:
   Halo(const Model<D>& model, const Domains<D>& domains, const Communicator& communicator);
+  ~Halo() { communicator_.finish_sending(); }
+  Halo(const Halo&) = delete;
+  Halo& operator=(const Halo&) = delete;
 
   const Region<D>& region() const { return region_; }
   /// The region and its margin of rcut: where FPs matter.
@@ -43,7 +46,13 @@ class Halo {
   /// a stay. On return it holds its particles and, as far out as rcut + skin, ghosts, all in its frame, and its solids;
   /// `copies` holds copies of solids. True if the stay of the PPs goes on, in which a ghost that has left that margin
   /// may be an old one; otherwise it has ended, and they are in any order. The message itself counts as one of PPs.
-  bool exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch);
+  bool exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch) {
+    begin_exchange(state, residents, watch);
+    return end_exchange(state, residents, copies, watch);
+  }
+  /// The same in two parts. Between them the messages are on their way, and a stay that lasts may still end.
+  void begin_exchange(State<D>& state, Residents<D>& residents, Stopwatch& watch);
+  bool end_exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch);
 
   /// Delivers reports to the owners of the solids; returns those for solids owned here.
   std::vector<HomeReport<D>> send_home(const std::vector<Solid<D>>& copies, std::vector<HomeReport<D>>&& reports);
@@ -58,7 +67,8 @@ class Halo {
   void unpack_fluid(BufferReader& reader, FluidParticles<D>& fluid);
   void unpack_solids(std::vector<BufferReader>& readers, std::vector<Solid<D>>& solids,
                      std::vector<Solid<D>>& copies) const;
-  void swap_messages();
+  void clear_messages();
+  void send_messages();
 
   const Model<D>& model_;
   const Domains<D>& domains_;

@@ -36,8 +36,13 @@ class PairBlocks {
   using Block = PairBlock<D, Numbers>;
   using Sums = PairResult<D, typename Numbers::Sum>;
 
-  /// Sums are set to zero. `fluid` is in the order of `grid`.
+  /// Sums are set to zero. `fluid` is in the order of `grid`. With `chosen` only those blocks for which chosen(block).
   void fill(const Model<D>& model, const Numbers& numbers, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
+    fill(model, numbers, fluid, grid, [](std::uint32_t) { return true; });
+  }
+  template <class Chosen>
+  void fill(const Model<D>& model, const Numbers& numbers, FluidParticles<D>& fluid, const CellGrid<D>& grid,
+            Chosen&& chosen) {
     for (auto& values : fluid.field) {
       // Whole lanes are read behind the last particle. They are no partners, but 0 times NaN would not be 0.
       const std::size_t count = values.size();
@@ -60,7 +65,9 @@ class PairBlocks {
     for (int plane = 0; plane < planes; ++plane) {
       const std::uint32_t end = grid.plane_start(plane + 1);
       for (std::uint32_t i = grid.plane_start(plane); i < end; i += lane_count) {
-        Block& block = blocks_[(i + gap(plane)) / lane_count];
+        const std::uint32_t n = (i + gap(plane)) / lane_count;
+        if (!chosen(n)) continue;
+        Block& block = blocks_[n];
         fill_block(model, numbers, fluid, i, block);
         // Lanes of a gap are nobody's partners: they lie far from the plane.
         for (std::uint32_t lane = end - i; lane < lane_count; ++lane)

@@ -146,7 +146,8 @@ bool Residents<D>::refresh(FluidParticles<D>& fluid, BufferReader& reader, std::
     return result;
   };
   sequence_.assign(count, none);
-  std::size_t expected = 0;  // in `sequence`
+  double largest_square = 0.0;  // of displacements, rcut^2
+  std::size_t expected = 0;     // in `sequence`
   for (std::size_t k = 0; k < count; ++k) {
     std::uint64_t id;
     std::memcpy(&id, ids + k * sizeof id, sizeof id);
@@ -170,13 +171,14 @@ bool Residents<D>::refresh(FluidParticles<D>& fluid, BufferReader& reader, std::
       }
       expected = stood_[found];
     }
-    farthest_ = std::max(farthest_, std::sqrt(square));
+    largest_square = std::max(largest_square, square);
     for (std::size_t f = 0; f < fluid.field.size(); ++f) fluid.field[f][places_[found]] = value(f, k);
     up_to_date_[found] = 1;
     sequence_[k] = found;
     stood_[found] = static_cast<std::uint32_t>(k);
     ++expected;
   }
+  farthest_ = std::max(farthest_, std::sqrt(largest_square));
   sequence.swap(sequence_);
   return true;
 }

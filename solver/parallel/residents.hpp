@@ -62,6 +62,8 @@ class Residents {
   void settle(const FluidParticles<D>& fluid, bool single_step = false);
   /// In a stay that lasts: adds those of this process' own PPs that lie in region n of `others` now.
   void select(const FluidParticles<D>& fluid, std::size_t n, std::vector<std::uint32_t>& chosen) const;
+  /// PPs that others own or may come to own: all those that messages can change.
+  std::span<const std::uint32_t> foreign() const { return places_; }
   /// PPs that were outside the region at the start of the stay and may lie in it now.
   std::span<const std::uint32_t> near_outside() const { return near_outside_; }
   /// Largest displacement of the own PPs in the step made now, rcut.
