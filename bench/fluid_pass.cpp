@@ -17,7 +17,12 @@ enum class Work { pass, search };
 
 template <int D, class Numbers, Work work>
 void measure(benchmark::State& state) {
-  bench::SortedFluid<D> setup(D == 2 ? 320 : 48, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  bench::SortedFluid<D> setup(D == 2 ? 320 : 48, [&](auto&) {
+    Vec<D, double> cells;
+    for (int axis = 0; axis < D; ++axis)
+      cells[axis] = axis == 0 ? static_cast<double>(state.range(1)) : 0.01 * static_cast<double>(state.range(0));
+    return cells;
+  });
   FluidPass<D, Numbers> pass(setup.fluid.model, 1);
   setup.list(pass);
   for (auto _ : state) {
@@ -36,8 +41,8 @@ void measure(benchmark::State& state) {
 
 template <int D>
 void with_cells(benchmark::internal::Benchmark* benchmark) {
-  benchmark->ArgNames({"across", "along"})
-      ->ArgsProduct({D == 2 ? std::vector<std::int64_t>{1, 2, 3, 4} : std::vector<std::int64_t>{1, 2, 3}, {4, 8, 16}})
+  benchmark->ArgNames({"percent_across", "along"})
+      ->ArgsProduct({{100, 125, 145, 160, 200, 300}, {4, 8, 16}})
       ->Unit(benchmark::kMillisecond);
 }
 

@@ -21,8 +21,6 @@ namespace mappm {
 using bench::Counted, bench::Operations, bench::SortedFluid;
 namespace {
 
-constexpr int across = 1, along = 8;  // cells to a reach, as in the engine
-
 /// What the search meets, candidates, and what the lists hold that it makes: blocks, and those with a pair within the
 /// cutoff; pairs within the cutoff.
 struct Census {
@@ -37,9 +35,7 @@ class Parts {
 
  public:
   explicit Parts(std::uint64_t side)
-      : setup_(side, across, along),
-        numbers_(setup_.fluid.model.pair, setup_.fluid.model.rest_density),
-        pass_(setup_.fluid.model, 1) {
+      : setup_(side), numbers_(setup_.fluid.model.pair, setup_.fluid.model.rest_density), pass_(setup_.fluid.model, 1) {
     setup_.list(pass_);
     sum();
     lay_blocks();

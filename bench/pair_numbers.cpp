@@ -57,7 +57,7 @@ class Ratio {
 
 template <int D>
 void measure(const std::string& name, std::uint64_t side) {
-  bench::SortedFluid<D> fluid(side, 1, 8);  // cells as in the engine
+  bench::SortedFluid<D> fluid(side);
   Timed<D, DoublePairs<D>> exact(fluid);
   Timed<D, SinglePairs<D>> single(fluid);
   Ratio single_ratio;

@@ -5,14 +5,14 @@
 #include <cstdint>
 
 #include "disordered_fluid.hpp"
+#include "parallel/fluid_pass.hpp"
 #include "parallel/residents.hpp"
 #include "particles/cell_grid.hpp"
 #include "serial/neighbours.hpp"
 
 namespace mappm::bench {
 
-/// The outermost reach of the box, rcut and the skin of the lists, stands for ghosts. `across`, `along`: cells to a
-/// reach.
+/// The outermost reach of the box, rcut and the skin of the lists, stands for ghosts.
 template <int D>
 struct SortedFluid {
   DisorderedFluid<D> fluid;
@@ -20,17 +20,19 @@ struct SortedFluid {
   CellGrid<D> grid;
   std::uint64_t owned = 0, pairs = 0, pairs_of_ghosts = 0;
 
-  SortedFluid(std::uint64_t side, int across, int along)
+  explicit SortedFluid(std::uint64_t side)
+      : SortedFluid(side, [](auto& model) { return cells_per_reach(model, reach); }) {}
+  /// cells_of(model): cells to a reach.
+  template <class CellsOf>
+  SortedFluid(std::uint64_t side, CellsOf&& cells_of)
       : fluid(side), particles(fluid.state(Region<D>::whole_box()).fluid) {
     Vec<D, double> in_reach;
-    Vec<D, int> cells;
     for (int axis = 0; axis < D; ++axis) {
       in_reach[axis] = fluid.model.pair.length[axis] / reach;
       region.low[axis] = std::ceil(1.0 / in_reach[axis]);
       region.high[axis] = box_quanta - region.low[axis];
-      cells[axis] = axis == 0 ? along : across;
     }
-    grid.fit(region, in_reach, cells);
+    grid.fit(region, in_reach, cells_of(fluid.model));
     grid.sort(particles);
     count();
   }

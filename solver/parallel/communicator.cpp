@@ -111,7 +111,6 @@ std::int64_t Communicator::hdf5_file_access() const {
 void Communicator::exchange(std::span<const int> partners, std::span<Buffer> out, std::span<Buffer> in) const {
   send(partners, out);
   receive(partners, out, in);
-  finish_sending();
 }
 
 void Communicator::send(std::span<const int> partners, std::span<const Buffer> out) const {
@@ -135,9 +134,7 @@ void Communicator::receive(std::span<const int> partners, std::span<Buffer> out,
     in[n].resize(static_cast<std::size_t>(bytes));
     MPI_Mrecv(in[n].data(), bytes, MPI_BYTE, &message, MPI_STATUS_IGNORE);
   }
-}
-
-void Communicator::finish_sending() const {
+  // Here and no later: some networks send only while the sender waits.
   MPI_Waitall(static_cast<int>(impl_->requests.size()), impl_->requests.data(), MPI_STATUSES_IGNORE);
   impl_->requests.clear();
 }

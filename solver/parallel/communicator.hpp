@@ -35,10 +35,9 @@ class Communicator : public Group {
   /// Sends `out[n]` to rank `partners[n]` and receives one message from each into `in[n]`. Partners are mutual. A
   /// partner that is this rank itself is a copy. One message pair a partner.
   void exchange(std::span<const int> partners, std::span<Buffer> out, std::span<Buffer> in) const;
-  /// The same in parts, with work between them: `out` must stay as it is until `finish_sending`.
+  /// The same in two parts, with work between them that leaves `out` as it is.
   void send(std::span<const int> partners, std::span<const Buffer> out) const;
   void receive(std::span<const int> partners, std::span<Buffer> out, std::span<Buffer> in) const;
-  void finish_sending() const;
 
   /// Sends out[r] to every rank r and receives from all; for rare events (a new decomposition), not for steps.
   std::vector<Buffer> exchange_all(std::vector<Buffer>&& out) const;

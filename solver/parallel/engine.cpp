@@ -10,16 +10,6 @@ namespace mappm {
 
 namespace {
 
-/// Cells to the reach of lists, by measurement (bench/fluid_pass.cpp, 39 and 77 neighbours): narrow along a row, where
-/// they only order its particles; across, more rows would leave more lanes empty.
-template <int D>
-Vec<D, int> cells_per_reach() {
-  Vec<D, int> cells;
-  cells[0] = 8;
-  for (int axis = 1; axis < D; ++axis) cells[axis] = 1;
-  return cells;
-}
-
 template <int D>
 Vec<D, double> in_cutoffs(const Model<D>& model, const Vec<D, double>& x) {
   Vec<D, double> lengths;
@@ -77,7 +67,7 @@ void ParallelEngine<D>::start_domains() {
   residents_ = std::make_unique<Residents<D>>(model_, halo_->region(), halo_->needed_by_others());
   Vec<D, double> in_reach;  // length of a quantum
   for (int axis = 0; axis < D; ++axis) in_reach[axis] = model_.pair.length[axis] / (1.0 + skin);
-  grid_.fit(halo_->region(), in_reach, cells_per_reach<D>());
+  grid_.fit(halo_->region(), in_reach, cells_per_reach(model_, 1.0 + skin));
   if (model_.shapes.empty()) return;
   Vec<D, double> low = in_cutoffs(model_, halo_->region().low), high = in_cutoffs(model_, halo_->region().high);
   double smallest = model_.largest_reach;

@@ -1,6 +1,8 @@
 // The pair pass of the fast engine: every pair of PPs once (half list), every PP-FP pair once, in rows of lanes.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -16,6 +18,18 @@
 #include "particles/pair_trace.hpp"
 
 namespace mappm {
+
+/// Cells to a reach (rcut), by measurement (bench/fluid_pass.cpp): narrow along a row, where they only order its PPs.
+/// Across, so wide that the PPs of a block fill a cube, for fewest others are in reach of a compact one; in the plane a
+/// row as wide as the reach comes as near to a square, and has fewer rows beside it.
+template <int D>
+Vec<D, double> cells_per_reach(const Model<D>& model, double reach) {
+  Vec<D, double> cells;
+  cells[0] = 8.0;
+  const double edge = std::cbrt(lane_count / model.rest_density);  // of the cube, rcut
+  for (int axis = 1; axis < D; ++axis) cells[axis] = D == 3 ? std::max(1.0, reach / edge) : 1.0;
+  return cells;
+}
 
 /// `Numbers`: DoublePairs or SinglePairs, as the model has it.
 template <int D, class Numbers>

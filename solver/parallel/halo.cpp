@@ -33,13 +33,6 @@ Halo<D>::Halo(const Model<D>& model, const Domains<D>& domains, const Communicat
   }
 }
 
-/// For new ones: what was sent before has arrived by then.
-template <int D>
-void Halo<D>::clear_messages() {
-  communicator_.finish_sending();
-  for (Buffer& buffer : out_) buffer.clear();
-}
-
 template <int D>
 void Halo<D>::send_messages() {
   for (std::size_t n = 0; n < partners_.size(); ++n) {
@@ -48,6 +41,12 @@ void Halo<D>::send_messages() {
     traffic_.bytes += out_[n].size();
   }
   communicator_.send(partners_, out_);
+}
+
+template <int D>
+void Halo<D>::receive_messages() {
+  communicator_.receive(partners_, out_, in_);
+  for (Buffer& buffer : out_) buffer.clear();
 }
 
 /// The periodic image of a position that is nearest to the middle of the region.
@@ -66,7 +65,6 @@ void Halo<D>::begin_exchange(State<D>& state, Residents<D>& residents, Stopwatch
   // Alone, a process ends its stay when it must.
   const std::uint64_t plan = traffic_.neighbours > 0 ? residents.plan(state.step) : Residents<D>::never;
   if (!residents.lasts()) residents.leave(state.fluid);
-  clear_messages();
   for (Buffer& buffer : out_) put(buffer, plan);
   pack_fluid(state.fluid, residents);
   watch.end(Phase::exchange);
@@ -78,7 +76,7 @@ void Halo<D>::begin_exchange(State<D>& state, Residents<D>& residents, Stopwatch
 
 template <int D>
 bool Halo<D>::end_exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch) {
-  communicator_.receive(partners_, out_, in_);
+  receive_messages();
   std::vector<BufferReader> readers(in_.begin(), in_.end());
   for (BufferReader& reader : readers) residents.fall_in(state.step, reader.get<std::uint64_t>());
   const std::vector<BufferReader> of_fluid = readers;
@@ -200,7 +198,6 @@ void Halo<D>::pack_solid(const Solid<D>& solid, std::size_t image) {
 template <int D>
 std::vector<HomeReport<D>> Halo<D>::send_home(const std::vector<Solid<D>>& copies,
                                               std::vector<HomeReport<D>>&& reports) {
-  clear_messages();
   for (std::size_t c = 0; c < copies.size(); ++c) {
     if (reports[c].index.empty()) continue;
     const int owner = domains_.owner(copies[c].x);
@@ -212,7 +209,7 @@ std::vector<HomeReport<D>> Halo<D>::send_home(const std::vector<Solid<D>>& copie
     put(buffer, reports[c].density);
   }
   send_messages();
-  communicator_.receive(partners_, out_, in_);
+  receive_messages();
   std::vector<HomeReport<D>> received;
   for (const Buffer& buffer : in_) {
     BufferReader reader(buffer);

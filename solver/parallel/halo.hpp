@@ -32,9 +32,6 @@ template <int D>
 class Halo {
  public:
   Halo(const Model<D>& model, const Domains<D>& domains, const Communicator& communicator);
-  ~Halo() { communicator_.finish_sending(); }
-  Halo(const Halo&) = delete;
-  Halo& operator=(const Halo&) = delete;
 
   const Region<D>& region() const { return region_; }
   /// The region and its margin of rcut: where FPs matter.
@@ -67,8 +64,8 @@ class Halo {
   void unpack_fluid(BufferReader& reader, FluidParticles<D>& fluid);
   void unpack_solids(std::vector<BufferReader>& readers, std::vector<Solid<D>>& solids,
                      std::vector<Solid<D>>& copies) const;
-  void clear_messages();
   void send_messages();
+  void receive_messages();
 
   const Model<D>& model_;
   const Domains<D>& domains_;

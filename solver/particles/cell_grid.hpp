@@ -14,16 +14,19 @@ namespace mappm {
 template <int D>
 class CellGrid {
  public:
-  /// Cells whose borders fall on those of the region; beyond it, `per_reach` layers of margin cells on each side, on
-  /// each axis. length: of a position quantum in reaches, per axis.
-  void fit(const Region<D>& region, const Vec<D, double>& length, const Vec<D, int>& per_reach) {
+  /// About `per_reach` cells to the reach on each axis, at least 1, whose borders fall on those of the region; beyond
+  /// it, on each side, as many layers of margin cells as the reach can need. length: of a position quantum in reaches,
+  /// per axis.
+  void fit(const Region<D>& region, const Vec<D, double>& length, const Vec<D, double>& per_reach) {
     region_ = region;
-    margin_ = per_reach;
     std::size_t cells = 1;
     for (int axis = 0; axis < D; ++axis) {
-      const double quanta = region.high[axis] - region.low[axis];
-      // A little wider than the reach / per_reach, so that rounding never hides a pair within it.
-      inner_[axis] = std::max(1, static_cast<int>(quanta * length[axis] * per_reach[axis] * (1.0 - 1e-6)));
+      const double quanta = region.high[axis] - region.low[axis], reaches = quanta * length[axis];
+      margin_[axis] = static_cast<int>(std::ceil(per_reach[axis]));
+      // Cells of the margin are a little wider than the reach altogether, so that rounding never hides a pair within
+      // it.
+      const double most = reaches * margin_[axis] * (1.0 - 1e-6);
+      inner_[axis] = std::max(1, static_cast<int>(std::min(std::round(reaches * per_reach[axis]), most)));
       scale_[axis] = inner_[axis] / quanta;
       width_[axis] = quanta * length[axis] / inner_[axis];
       count_[axis] = inner_[axis] + 2 * margin_[axis];

@@ -12,8 +12,8 @@ namespace mappm {
 namespace {
 
 template <int D>
-Vec<D, int> cells_per_cutoff(int along, int across) {
-  Vec<D, int> cells;
+Vec<D, double> cells_per_cutoff(double along, double across) {
+  Vec<D, double> cells;
   cells[0] = along;
   for (int axis = 1; axis < D; ++axis) cells[axis] = across;
   return cells;
@@ -72,7 +72,7 @@ bool is_inner(const CellGrid<D>& grid, const Vec<D, double>& x) {
 }
 
 template <int D>
-void expect_all_pairs_in_reach(double side, int per_cutoff) {
+void expect_all_pairs_in_reach(double side, double per_cutoff) {
   SCOPED_TRACE(::testing::Message() << D << "D, side " << side << ", cells to a cutoff " << per_cutoff);
   const Place<D> place(side);
   CellGrid<D> grid;
@@ -103,14 +103,14 @@ void expect_all_pairs_in_reach(double side, int per_cutoff) {
 
 TEST(CellGrid, every_pair_within_the_cutoff_of_an_owned_particle_is_in_reach) {
   for (const double side : {1.25, 2.0, 3.7})
-    for (const int per_cutoff : {1, 2, 3}) {
+    for (const double per_cutoff : {1.0, 1.45, 1.9, 2.0, 3.0}) {
       expect_all_pairs_in_reach<2>(side, per_cutoff);
       expect_all_pairs_in_reach<3>(side, per_cutoff);
     }
 }
 
 template <int D>
-void expect_exact_ownership(const Place<D>& place, int per_cutoff) {
+void expect_exact_ownership(const Place<D>& place, double per_cutoff) {
   CellGrid<D> grid;
   grid.fit(place.region, place.length, cells_per_cutoff<D>(per_cutoff + 2, per_cutoff));
   for (int axis = 0; axis < D; ++axis) {
@@ -129,7 +129,7 @@ void expect_exact_ownership(const Place<D>& place, int per_cutoff) {
 
 TEST(CellGrid, ownership_by_cell_is_exact_at_the_borders) {
   for (double side = 1.25; side < 6.0; side += 0.37)
-    for (const int per_cutoff : {1, 3}) {
+    for (const double per_cutoff : {1.0, 1.45, 3.0}) {
       expect_exact_ownership(Place<2>(side), per_cutoff);
       expect_exact_ownership(Place<3>(side), per_cutoff);
     }
@@ -149,6 +149,15 @@ TEST(CellGrid, cells_by_hand) {
   // Beyond the margin a particle is kept in the outermost cell.
   EXPECT_EQ(grid.coordinate(0, -0.9 * box_quanta), 0);
   EXPECT_EQ(grid.coordinate(0, 1.9 * box_quanta), 22);
+  // 1.4 cells to a cutoff are 8.4 and 5.6 cells, and two of them reach as far. Of 1.95 there would be 11.7 and 7.8, but
+  // 12 and 8 would not, for want of a hair.
+  grid.fit(Region<2>::whole_box(), {{6.0 / box_quanta, 4.0 / box_quanta}}, cells_per_cutoff<2>(1.4, 1.4));
+  EXPECT_EQ(grid.inner(0), 8);
+  EXPECT_EQ(grid.inner(1), 6);
+  EXPECT_EQ(grid.margin(0), 2);
+  grid.fit(Region<2>::whole_box(), {{6.0 / box_quanta, 4.0 / box_quanta}}, cells_per_cutoff<2>(1.95, 1.95));
+  EXPECT_EQ(grid.inner(0), 11);
+  EXPECT_EQ(grid.inner(1), 7);
 }
 
 template <int D>
