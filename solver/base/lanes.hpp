@@ -130,6 +130,11 @@ MAPPM_INLINE auto lanes_of(const Simd<U, Abi>& lanes) {
   return std::experimental::static_simd_cast<std::experimental::rebind_simd_t<T, Simd<U, Abi>>>(lanes);
 }
 
+/// Modulo 2^32.
+MAPPM_INLINE Int32Lanes wrapped_difference(const Int32Lanes& a, const Int32Lanes& b) {
+  return lanes_of<std::int32_t>(lanes_of<std::uint32_t>(a) - lanes_of<std::uint32_t>(b));
+}
+
 MAPPM_INLINE std::int64_t widened(std::int32_t x) { return x; }
 MAPPM_INLINE IntLanes widened(const Int32Lanes& x) { return lanes_of<std::int64_t>(x); }
 

@@ -95,7 +95,9 @@ class SinglePairs {
   MAPPM_INLINE auto place(int axis, const Lanes& x) const {
     return lanes_of<std::int32_t>(to_fixed(x * Lanes(1.0 / place_[axis])));
   }
-  MAPPM_INLINE static FloatLanes apart(const Int32Lanes& a, const Int32Lanes& b) { return lanes_of<float>(a - b); }
+  MAPPM_INLINE static FloatLanes apart(const Int32Lanes& a, const Int32Lanes& b) {
+    return lanes_of<float>(wrapped_difference(a, b));
+  }
   static std::int32_t far_from(std::int32_t place) {  // half a window, at least 4 rcut
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(place) + (std::uint32_t{1} << 31));
   }
