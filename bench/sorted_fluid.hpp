@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numeric>
+#include <vector>
 
 #include "disordered_fluid.hpp"
 #include "parallel/fluid_pass.hpp"
@@ -40,7 +42,9 @@ struct SortedFluid {
   /// Finds the lists of a pass, as at the start of a stay.
   template <class Pass>
   void list(Pass& pass) {
-    pass.list(particles, grid, widened(fluid.model, region, 0.5 * skin), reach);
+    std::vector<std::uint32_t> all(particles.size());  // so that each sum lays them into blocks
+    std::iota(all.begin(), all.end(), 0u);
+    pass.list(particles, grid, widened(fluid.model, region, 0.5 * skin), reach, all, false);
   }
 
  private:

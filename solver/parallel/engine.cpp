@@ -99,7 +99,7 @@ void ParallelEngine<D>::step() {
   if (traced_particle_.has_value() || faces_due()) state();  // what explains the pairs wants them in their cells
   halo_->begin_exchange(state_, *residents_, watch_);
   if (residents_->staying() && overlaps()) {  // what needs no message, while they are on their way
-    std::visit([&](auto& pass) { pass.sum_inner(state_.fluid, grid_); }, pass_);
+    std::visit([&](auto& pass) { pass.sum_inner(grid_); }, pass_);
     watch_.end(Phase::pairs);
   }
   const bool stay = halo_->end_exchange(state_, *residents_, copies_, watch_);
@@ -117,18 +117,13 @@ void ParallelEngine<D>::step() {
     if (single_step) {
       std::visit([&](auto& pass) { pass.sum_once(state_.fluid, grid_); }, pass_);
     } else {
-      std::optional<std::span<const std::uint32_t>> later;
-      if (overlaps()) later = residents_->foreign();
       std::visit(
           [&](auto& pass) {
-            if (!stay) {
-              pass.list(state_.fluid, grid_, residents_->may_own(), 1.0 + skin, later);
-              watch_.end(Phase::lists);
-            }
-            if (stay && later)
-              pass.sum_rest(state_.fluid, grid_);
-            else
-              pass.sum(state_.fluid, grid_);
+            if (!stay)
+              pass.list(state_.fluid, grid_, residents_->may_own(), 1.0 + skin, residents_->foreign(), overlaps());
+            watch_.end(Phase::lists);
+            if (!stay || !overlaps()) pass.sum_inner(grid_);
+            pass.sum_rest(state_.fluid, grid_);
           },
           pass_);
     }
@@ -281,8 +276,9 @@ void ParallelEngine<D>::move_fluid() {
     const auto length = separation(model_.pair, way);
     moved.square = larger(moved.square, Lanes(dot(length, length)));
   };
-  const auto move_one = [&]<bool field>(std::uint32_t i, NeighbourSums<D> sums, Moved& moved,
-                                        std::bool_constant<field>) {
+  /// `give` passes the new state on.
+  const auto move_one = [&]<bool field>(std::uint32_t i, NeighbourSums<D> sums, Moved& moved, std::bool_constant<field>,
+                                        auto&& give) {
     Vec<D, double> x, v;
     for (int axis = 0; axis < D; ++axis) {
       x[axis] = fluid.x(axis)[i];
@@ -302,11 +298,12 @@ void ParallelEngine<D>::move_fluid() {
       fluid.x(axis)[i] = x[axis];
       fluid.v(axis)[i] = v[axis];
     }
+    give(x, v, fluid.density()[i]);
     keep_farthest(x - before, moved);
     ++moved.count;
   };
   /// False, and nothing done, where one of them is out of range or not in the region.
-  const auto move_lanes = [&](std::uint32_t i, const NeighbourSums<D, IntLanes>& sums, Moved& moved) {
+  const auto move_lanes = [&](std::uint32_t i, const NeighbourSums<D, IntLanes>& sums, Moved& moved, auto&& give) {
     Vec<D, Lanes> x, v;
     auto outside = Lanes(0.0) > Lanes(0.0);
     for (int axis = 0; axis < D; ++axis) {
@@ -322,6 +319,7 @@ void ParallelEngine<D>::move_fluid() {
       store_lanes(motion.v[axis], &fluid.v(axis)[i]);
     }
     store_lanes(motion.density, &fluid.density()[i]);
+    give(motion.x, motion.v, motion.density);
     keep_farthest(motion.x - x, moved);
     moved.count += lane_count;
     return true;
@@ -332,21 +330,26 @@ void ParallelEngine<D>::move_fluid() {
     all.square = larger(all.square, moved.square);
     for (int axis = 0; axis < D; ++axis) all.given[axis] += moved.given[axis];
   };
-  const auto move = [&]<bool field>(const auto& pass, std::bool_constant<field> with_field) {
+  const auto move = [&]<bool field>(auto& pass, std::bool_constant<field> with_field) {
 #pragma omp parallel num_threads(options_.threads) if (options_.threads > 1)
     {
       Moved moved;
 #pragma omp for schedule(static)
       for (std::size_t n = 0; n < rows_.size(); ++n) {
-        const auto [first, last, plane] = rows_[n];
-        for (std::uint32_t i = first; i < last;) {
+        const Row& row = rows_[n];
+        const int plane = row.plane;
+        const std::uint32_t last = row.last;
+        for (std::uint32_t i = row.first; i < last;) {
+          const auto give = [&](const auto& x, const auto& v, const auto& density) __attribute__((always_inline)) {
+            pass.moved(i, plane, x, v, density);
+          };
           if constexpr (!field)
             if (i + lane_count <= last && pass.begins_lanes(i, plane) &&
-                move_lanes(i, pass.sums_of_lanes(i, plane), moved)) {
+                move_lanes(i, pass.sums_of_lanes(i, plane), moved, give)) {
               i += lane_count;
               continue;
             }
-          move_one(i, pass.sums(i, plane), moved, with_field);
+          move_one(i, pass.sums(i, plane), moved, with_field, give);
           ++i;
         }
       }
@@ -354,11 +357,11 @@ void ParallelEngine<D>::move_fluid() {
       collect(moved);
     }
     Moved entered;
-    for (const std::uint32_t i : residents_->near_outside()) move_one(i, pass.sums(i), entered, with_field);
+    for (const std::uint32_t i : residents_->near_outside())
+      move_one(i, pass.sums(i), entered, with_field, [](auto&&...) {});
     collect(entered);
   };
-  std::visit([&](const auto& pass) { with_force_field(model_, state_.step, [&](auto field) { move(pass, field); }); },
-             pass_);
+  std::visit([&](auto& pass) { with_force_field(model_, state_.step, [&](auto field) { move(pass, field); }); }, pass_);
   double square = 0.0;
   for (int lane = 0; lane < lane_count; ++lane) square = std::max(square, static_cast<double>(all.square[lane]));
   residents_->moved(std::sqrt(square));

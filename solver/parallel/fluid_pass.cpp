@@ -52,7 +52,7 @@ void FluidPass<D, Numbers>::for_each_row(const CellGrid<D>& grid, int first_plan
   if constexpr (D == 2) {
     for (row[1] = first_plane; row[1] < last_plane; ++row[1]) work(row);
   } else {
-    // In blocks, of which two planes fit a core's own cache.
+    // In blocks, of which the planes with partners fit a core's own cache.
     constexpr int block = 4;
     for (int first = 0; first < grid.count(1); first += block)
       for (row[2] = first_plane; row[2] < last_plane; ++row[2])
@@ -83,6 +83,7 @@ void FluidPass<D, Numbers>::prepare(FluidParticles<D>& fluid, const CellGrid<D>&
 template <int D, class Numbers>
 void FluidPass<D, Numbers>::sum_once(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
   prepare(fluid, grid);
+  kept_.clear();
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     for_each_band(grid, [&](int first, int last, Search& search, std::size_t) {
       for_each_row(grid, first, last, [&](const Vec<D, int>& row) {
@@ -99,11 +100,11 @@ void FluidPass<D, Numbers>::sum_once(FluidParticles<D>& fluid, const CellGrid<D>
 
 template <int D, class Numbers>
 void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region,
-                                 double reach, std::optional<std::span<const std::uint32_t>> later) {
+                                 double reach, std::span<const std::uint32_t> foreign, bool apart) {
   prepare(fluid, grid);
-  known_later_.assign(blocks_.place_count() / lane_count, later ? 0 : 1);
-  if (later)
-    for (const std::uint32_t i : *later) known_later_[blocks_.place(i) / lane_count] = 1;
+  filled_ = true;
+  foreign_.assign(blocks_.place_count() / lane_count, 0);
+  for (const std::uint32_t i : foreign) foreign_[blocks_.place(i) / lane_count] = 1;
   const auto square = static_cast<typename Numbers::Real>(reach * reach);
   const std::vector<std::uint8_t> inside = places_in(fluid, grid, region);  // of each place
   const auto reaches_inside = [&](std::uint32_t block) {
@@ -119,8 +120,9 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
       for_each_list(fluid, grid, row, true, search, [&](Lists& lists) {
         lists.template measure<false>(numbers_, blocks_.data(), square);
         lists.for_each_centre([&](std::uint32_t place, std::span<const std::uint32_t> blocks, const auto& lanes) {
-          const auto is_later = [&](std::uint32_t block) { return known_later_[block] != 0; };
-          const Part part = is_later(place / lane_count) || std::ranges::any_of(blocks, is_later) ? rest : inner;
+          const auto is_foreign = [&](std::uint32_t block) { return foreign_[block] != 0; };
+          const bool alone = apart && !is_foreign(place / lane_count) && std::ranges::none_of(blocks, is_foreign);
+          const Part part = alone ? inner : rest;
           KeptLists<D, Numbers>& kept = kept_[parts * band + part];
           const auto is_wide = [&](std::uint32_t block) { return !wide.empty() && wide[block] != 0; };
           if (inside[place] != 0)
@@ -135,9 +137,14 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
 }
 
 template <int D, class Numbers>
-void FluidPass<D, Numbers>::sum_lists_of(Part part, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
-  blocks_.fill(model_, numbers_, fluid, grid,
-               [&](std::uint32_t block) { return (known_later_[block] != 0) == (part == rest); });
+void FluidPass<D, Numbers>::sum_rest(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
+  if (!filled_) blocks_.fill(model_, numbers_, fluid, grid, [&](std::uint32_t block) { return foreign_[block] != 0; });
+  filled_ = false;
+  sum_lists_of(rest, grid);
+}
+
+template <int D, class Numbers>
+void FluidPass<D, Numbers>::sum_lists_of(Part part, const CellGrid<D>& grid) {
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     for_each_band(grid, [&](int, int, Search& search, std::size_t band) {
       kept_[parts * band + part].template sum<Kernel, transport>(numbers_, blocks_, search.squares);

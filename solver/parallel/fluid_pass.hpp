@@ -42,19 +42,26 @@ class FluidPass {
 
   /// Finds the pairs of which one PP lies in `region`, up to a distance of `reach` (rcut, at least 1): `sum` finds all
   /// within rcut until two PPs have come nearer by the rest, or one from outside the region has entered the part that
-  /// matters. `fluid` is in the order of `grid`, whose cells are fit to that reach. `later`: those PPs of which nothing
-  /// will be known before `sum_rest`; without it nothing will be of any.
+  /// matters. `fluid` is in the order of `grid`, whose cells are fit to that reach. `foreign`: the PPs that others than
+  /// `moved` may change. With `apart`, `sum_inner` sums pairs that have nothing to do with these.
   void list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region, double reach,
-            std::optional<std::span<const std::uint32_t>> later = {});
+            std::span<const std::uint32_t> foreign, bool apart);
   /// After `list`, with the PPs in the same order: sums over all PPs near each PP of the region; sums of others are
   /// partial and meaningless.
   void sum(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
-    sum_inner(fluid, grid);
+    sum_inner(grid);
     sum_rest(fluid, grid);
   }
-  /// The same in two parts: first the pairs of PPs far from all those of `later`, then the others.
-  void sum_inner(FluidParticles<D>& fluid, const CellGrid<D>& grid) { sum_lists_of(inner, fluid, grid); }
-  void sum_rest(FluidParticles<D>& fluid, const CellGrid<D>& grid) { sum_lists_of(rest, fluid, grid); }
+  /// The same in two parts, of which only the second looks at foreign PPs.
+  void sum_inner(const CellGrid<D>& grid) { sum_lists_of(inner, grid); }
+  void sum_rest(FluidParticles<D>& fluid, const CellGrid<D>& grid);
+  /// After a sum: the new state of PP i of this plane, or of those that lie side by side with it (`begins_lanes`). Each
+  /// PP that is not foreign must be given before the next sum.
+  template <class Real>
+  MAPPM_INLINE void moved(std::uint32_t i, int plane, const Vec<D, Real>& x, const Vec<D, Real>& v,
+                          const Real& density) {
+    if (!kept_.empty()) blocks_.refill(model_, numbers_, i + blocks_.gap(plane), x, v, density);
+  }
   /// Both in one, for PPs that will not keep their order.
   void sum_once(FluidParticles<D>& fluid, const CellGrid<D>& grid);
   /// After a sum: adds the pairs of PPs and FPs. `frozen` are all FPs in reach; `frozen_sums[k]` becomes the sum over
@@ -113,7 +120,7 @@ class FluidPass {
   template <class Kernel, bool transport, bool lanes_first, class Beta>
   PairSums sums_of_pair(const Centre& centre, std::uint32_t place, const Beta& beta) const;
   void prepare(FluidParticles<D>& fluid, const CellGrid<D>& grid);
-  void sum_lists_of(Part part, FluidParticles<D>& fluid, const CellGrid<D>& grid);
+  void sum_lists_of(Part part, const CellGrid<D>& grid);
   std::vector<std::uint8_t> wide_blocks(const FluidParticles<D>& fluid, const CellGrid<D>& grid) const;
   std::vector<std::uint8_t> places_in(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
                                       const Region<D>& region) const;
@@ -127,8 +134,9 @@ class FluidPass {
   std::vector<Vec<D, int>> half_rows_, all_rows_;
   std::vector<Search> searches_;  // of the threads
   PairBlocks<D, Numbers> blocks_;
-  std::vector<KeptLists<D, Numbers>> kept_;  // of each band one for each part
-  std::vector<std::uint8_t> known_later_;    // of each block: whether it holds a PP of `later`
+  std::vector<KeptLists<D, Numbers>> kept_;  // of each band one for each part; none where they serve no longer
+  std::vector<std::uint8_t> foreign_;        // of each block: whether it holds a foreign PP
+  bool filled_ = false;                      // all blocks hold the PPs as they are
 };
 
 /// The pass in the precision of the model.

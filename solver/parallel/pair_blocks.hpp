@@ -76,6 +76,29 @@ class PairBlocks {
     }
   }
 
+  /// PPs of the block that begins at `place`, or the one at `place`, after a motion. Their sums are set to zero.
+  MAPPM_INLINE void refill(const Model<D>& model, const Numbers& numbers, std::uint32_t place, const Vec<D, Lanes>& x,
+                           const Vec<D, Lanes>& v, const Lanes& density) {
+    Block& block = blocks_[place / lane_count];
+    lay(model, numbers, x, v, density, block);
+    clear(block);
+  }
+  MAPPM_INLINE void refill(const Model<D>& model, const Numbers& numbers, std::uint32_t place, const Vec<D, double>& x,
+                           const Vec<D, double>& v, double density) {
+    using Real = typename Numbers::Real;
+    Block& block = blocks_[place / lane_count];
+    const std::uint32_t lane = place % lane_count;
+    const auto volume = volume_terms(density, model.rest_density, 1.0, model.background);
+    for (int axis = 0; axis < D; ++axis) {
+      block.x[axis][lane] = numbers.place(axis, x[axis]);
+      block.v[axis][lane] = static_cast<Real>(v[axis]);
+      block.impulse[axis][lane] = block.shift[axis][lane] = 0;
+    }
+    block.v2[lane] = static_cast<Real>(volume.v2);
+    block.pv2[lane] = static_cast<Real>(volume.pv2);
+    block.density[lane] = 0;
+  }
+
   Block* data() { return blocks_.data(); }
   std::size_t place_count() const { return blocks_.size() * lane_count; }
   /// The block of a place alone, with sums of zero.
@@ -138,15 +161,24 @@ class PairBlocks {
  private:
   static void fill_block(const Model<D>& model, const Numbers& numbers, const FluidParticles<D>& fluid, std::size_t i,
                          Block& block) {
+    Vec<D, Lanes> x, v;
+    for (int axis = 0; axis < D; ++axis) {
+      x[axis] = load_lanes(&fluid.x(axis)[i]);
+      v[axis] = load_lanes(&fluid.v(axis)[i]);
+    }
+    lay(model, numbers, x, v, load_lanes(&fluid.density()[i]), block);
+    clear(block);
+  }
+  MAPPM_INLINE static void lay(const Model<D>& model, const Numbers& numbers, const Vec<D, Lanes>& x,
+                               const Vec<D, Lanes>& v, const Lanes& density, Block& block) {
     using Real = typename Numbers::Real;
     for (int axis = 0; axis < D; ++axis) {
-      store_lanes(numbers.place(axis, load_lanes(&fluid.x(axis)[i])), block.x[axis]);
-      store_lanes(lanes_of<Real>(load_lanes(&fluid.v(axis)[i])), block.v[axis]);
+      store_lanes(numbers.place(axis, x[axis]), block.x[axis]);
+      store_lanes(lanes_of<Real>(v[axis]), block.v[axis]);
     }
-    const auto volume = volume_terms(load_lanes(&fluid.density()[i]), model.rest_density, 1.0, model.background);
+    const auto volume = volume_terms(density, model.rest_density, 1.0, model.background);
     store_lanes(lanes_of<Real>(volume.v2), block.v2);
     store_lanes(lanes_of<Real>(volume.pv2), block.pv2);
-    clear(block);
   }
   static void clear(Block& block) {
     using SumLanes = decltype(load_lanes(block.density));

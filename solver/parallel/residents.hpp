@@ -1,6 +1,6 @@
 // The PPs on a process that keep their places in memory over some steps, a stay: with them the lists of pairs stay, and
 // the ghosts, which are brought up to date in place. What a process owns follows in each step from positions alone, as
-// ever; so every process ends its stay by itself, at any step, and needs nobody's leave.
+// ever; so every process can end its stay at any step, whatever the others do.
 //
 // At the start of a stay the PPs within rcut + skin of the region are here, and all pairs nearer than that are listed.
 // Nothing is missed while no PP has moved farther than skin / 2 since, for then only what was here can be within rcut

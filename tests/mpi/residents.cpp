@@ -205,6 +205,16 @@ TEST_F(ResidentsTest, a_stay_ends_with_that_of_a_neighbour_where_it_has_lasted_h
   EXPECT_EQ(end_of_neighbours(2, 0.225), 3u);  // and for less than three steps they do not pay
 }
 
+TEST_F(ResidentsTest, the_end_of_a_stay_at_rest_is_not_to_be_seen) {
+  settle({{1, 6.0}});
+  for (std::uint64_t step = 1; step < 9; ++step) {
+    move(0, 6.0);
+    EXPECT_EQ(residents_.plan(step), residents_.never);
+    residents_.fall_in(step, step + 1);  // nor does it end with another's
+    ASSERT_TRUE(receive({}));
+  }
+}
+
 TEST_F(ResidentsTest, lists_of_a_single_step_are_nobody_elses_concern) {
   settle({{1, 6.0}});
   residents_.leave(fluid_);

@@ -103,7 +103,7 @@ void expect_all_pairs_in_reach(double side, double per_cutoff) {
 
 TEST(CellGrid, every_pair_within_the_cutoff_of_an_owned_particle_is_in_reach) {
   for (const double side : {1.25, 2.0, 3.7})
-    for (const double per_cutoff : {1.0, 1.45, 1.9, 2.0, 3.0}) {
+    for (const double per_cutoff : {1.0, 1.45, 1.9, 2.0, 2.3, 3.0}) {
       expect_all_pairs_in_reach<2>(side, per_cutoff);
       expect_all_pairs_in_reach<3>(side, per_cutoff);
     }
