@@ -98,7 +98,7 @@ void ParallelEngine<D>::step() {
   watch_.start();
   if (traced_particle_.has_value() || faces_due()) state();  // what explains the pairs wants them in their cells
   halo_->begin_exchange(state_, *residents_, watch_);
-  if (residents_->staying() && overlaps()) {  // what needs no message, while they are on their way
+  if (residents_->staying()) {  // what needs no message, while they are on their way
     std::visit([&](auto& pass) { pass.sum_inner(grid_); }, pass_);
     watch_.end(Phase::pairs);
   }
@@ -120,9 +120,10 @@ void ParallelEngine<D>::step() {
       std::visit(
           [&](auto& pass) {
             if (!stay)
-              pass.list(state_.fluid, grid_, residents_->may_own(), 1.0 + skin, residents_->foreign(), overlaps());
+              pass.list(state_.fluid, grid_, residents_->may_own(), 1.0 + skin, residents_->foreign(),
+                        halo_->traffic().neighbours > 0);
             watch_.end(Phase::lists);
-            if (!stay || !overlaps()) pass.sum_inner(grid_);
+            if (!stay) pass.sum_inner(grid_);
             pass.sum_rest(state_.fluid, grid_);
           },
           pass_);

@@ -53,8 +53,6 @@ class ParallelEngine {
 
  private:
   void start_domains();
-  /// Whether there are messages to wait for.
-  bool overlaps() const { return halo_->traffic().neighbours > 0; }
   bool faces_due() const { return options_.faces > 0 && (state_.step + 1) % options_.faces == 0; }
   void place_solids();
   void explain_pairs();

@@ -102,7 +102,6 @@ template <int D, class Numbers>
 void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region,
                                  double reach, std::span<const std::uint32_t> foreign, bool apart) {
   prepare(fluid, grid);
-  filled_ = true;
   foreign_.assign(blocks_.place_count() / lane_count, 0);
   for (const std::uint32_t i : foreign) foreign_[blocks_.place(i) / lane_count] = 1;
   const auto square = static_cast<typename Numbers::Real>(reach * reach);
@@ -138,8 +137,7 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
 
 template <int D, class Numbers>
 void FluidPass<D, Numbers>::sum_rest(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
-  if (!filled_) blocks_.fill(model_, numbers_, fluid, grid, [&](std::uint32_t block) { return foreign_[block] != 0; });
-  filled_ = false;
+  blocks_.fill(model_, numbers_, fluid, grid, [&](std::uint32_t block) { return foreign_[block] != 0; });
   sum_lists_of(rest, grid);
 }
 

@@ -136,7 +136,6 @@ class FluidPass {
   PairBlocks<D, Numbers> blocks_;
   std::vector<KeptLists<D, Numbers>> kept_;  // of each band one for each part; none where they serve no longer
   std::vector<std::uint8_t> foreign_;        // of each block: whether it holds a foreign PP
-  bool filled_ = false;                      // all blocks hold the PPs as they are
 };
 
 /// The pass in the precision of the model.
