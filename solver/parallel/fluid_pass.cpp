@@ -102,13 +102,13 @@ template <int D, class Numbers>
 void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region,
                                  double reach, std::span<const std::uint32_t> foreign, bool apart) {
   prepare(fluid, grid);
-  foreign_.assign(blocks_.place_count() / lane_count, 0);
-  for (const std::uint32_t i : foreign) foreign_[blocks_.place(i) / lane_count] = 1;
+  foreign_.assign(blocks_.size(), 0);
+  for (const std::uint32_t i : foreign) foreign_[blocks_.place(i) / lanes] = 1;
   const auto square = static_cast<typename Numbers::Real>(reach * reach);
   const std::vector<std::uint8_t> inside = places_in(fluid, grid, region);  // of each place
   const auto reaches_inside = [&](std::uint32_t block) {
-    const auto first = inside.begin() + static_cast<std::ptrdiff_t>(block) * lane_count;
-    return std::find(first, first + lane_count, 1) != first + lane_count;
+    const auto first = inside.begin() + static_cast<std::ptrdiff_t>(block) * lanes;
+    return std::find(first, first + lanes, 1) != first + lanes;
   };
   const std::vector<std::uint8_t> wide = wide_blocks(fluid, grid);
   const int height = band_height(grid);
@@ -118,20 +118,21 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
     for_each_row(grid, first, last, [&](const Vec<D, int>& row) {
       for_each_list(fluid, grid, row, true, search, [&](Lists& lists) {
         lists.template measure<false>(numbers_, blocks_.data(), square);
-        lists.for_each_centre([&](std::uint32_t place, std::span<const std::uint32_t> blocks, const auto& lanes) {
+        lists.for_each_centre([&](std::uint32_t place, std::span<const std::uint32_t> blocks, const auto& partners) {
           const auto is_foreign = [&](std::uint32_t block) { return foreign_[block] != 0; };
-          const bool alone = apart && !is_foreign(place / lane_count) && std::ranges::none_of(blocks, is_foreign);
+          const bool alone = apart && !is_foreign(place / lanes) && std::ranges::none_of(blocks, is_foreign);
           const Part part = alone ? inner : rest;
           KeptLists<D, Numbers>& kept = kept_[parts * band + part];
           const auto is_wide = [&](std::uint32_t block) { return !wide.empty() && wide[block] != 0; };
           if (inside[place] != 0)
             kept.add(
-                place, blocks, [](std::uint32_t) { return true; }, is_wide, lanes);
+                place, blocks, [](std::uint32_t) { return true; }, is_wide, partners);
           else
-            kept.add(place, blocks, reaches_inside, is_wide, lanes);
+            kept.add(place, blocks, reaches_inside, is_wide, partners);
         });
       });
     });
+    for (const Part part : {inner, rest}) kept_[parts * band + part].close();
   });
 }
 
@@ -155,14 +156,14 @@ template <int D, class Numbers>
 std::vector<std::uint8_t> FluidPass<D, Numbers>::wide_blocks(const FluidParticles<D>& fluid,
                                                              const CellGrid<D>& grid) const {
   if (Numbers::largest_extent == std::numeric_limits<double>::infinity()) return {};
-  std::vector<std::uint8_t> wide(blocks_.place_count() / lane_count, 0);
+  std::vector<std::uint8_t> wide(blocks_.size(), 0);
   for (int plane = 0; plane < grid.count(D - 1); ++plane)
-    for (std::uint32_t end = grid.plane_start(plane + 1), i = grid.plane_start(plane); i < end; i += lane_count)
+    for (std::uint32_t end = grid.plane_start(plane + 1), i = grid.plane_start(plane); i < end; i += lanes)
       for (int axis = 0; axis < D; ++axis) {
         const auto first = fluid.x(axis).begin() + i;
-        const auto [least, most] = std::minmax_element(first, first + std::min<std::uint32_t>(lane_count, end - i));
+        const auto [least, most] = std::minmax_element(first, first + std::min(lanes, end - i));
         if ((*most - *least) * model_.pair.length[axis] > Numbers::largest_extent)
-          wide[(i + blocks_.gap(plane)) / lane_count] = 1;
+          wide[(i + blocks_.gap(plane)) / lanes] = 1;
       }
   return wide;
 }
@@ -171,7 +172,7 @@ std::vector<std::uint8_t> FluidPass<D, Numbers>::wide_blocks(const FluidParticle
 template <int D, class Numbers>
 std::vector<std::uint8_t> FluidPass<D, Numbers>::places_in(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
                                                            const Region<D>& region) const {
-  std::vector<std::uint8_t> inside(blocks_.place_count(), 0);
+  std::vector<std::uint8_t> inside(blocks_.size() * lanes, 0);
   for (int plane = 0; plane < grid.count(D - 1); ++plane)
     for (std::uint32_t i = grid.plane_start(plane); i < grid.plane_start(plane + 1); ++i)
       inside[i + blocks_.gap(plane)] = region.contains(fluid.position(i)) ? 1 : 0;
@@ -287,7 +288,7 @@ template <int D, class Numbers>
 template <class Kernel, bool transport, bool lanes_first, class Beta>
 auto FluidPass<D, Numbers>::sums_of_pair(const Centre& centre, std::uint32_t place, const Beta& beta) const
     -> PairSums {
-  const std::uint32_t lane = place % lane_count;
+  const std::uint32_t lane = place % lanes;
   PairBlocks<D, Numbers> alone = blocks_.one(place);
   Lists partner;
   partner.add(0, centre.x, 1, [&](std::size_t) { return typename NearRows<D>::Range{lane, lane + 1}; });
@@ -317,7 +318,7 @@ std::optional<std::vector<PartnerTrace<D>>> FluidPass<D, Numbers>::trace(const F
   while (traced < fluid.size() && !(fluid.id[traced] == particle && is_owned(traced))) ++traced;
   if (traced == fluid.size()) return std::nullopt;
   const std::uint32_t place = blocks_.place(traced);
-  std::vector<std::uint64_t> ids(blocks_.place_count());
+  std::vector<std::uint64_t> ids(blocks_.size() * lanes);
   for (std::uint32_t i = 0; i < fluid.size(); ++i) ids[blocks_.place(i)] = fluid.id[i];
   Search search;
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {

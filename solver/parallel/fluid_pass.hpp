@@ -26,7 +26,8 @@ template <int D>
 Vec<D, double> cells_per_reach(const Model<D>& model, double reach) {
   Vec<D, double> cells;
   cells[0] = 8.0;
-  const double edge = std::cbrt(lane_count / model.rest_density);  // of the cube, rcut
+  const int lanes = static_cast<int>(model.terms.single ? FloatLanes::size() : Lanes::size());
+  const double edge = std::cbrt(lanes / model.rest_density);  // of the cube, rcut
   for (int axis = 1; axis < D; ++axis) cells[axis] = D == 3 ? std::max(1.0, reach / edge) : 1.0;
   return cells;
 }
@@ -60,7 +61,7 @@ class FluidPass {
   template <class Real>
   MAPPM_INLINE void moved(std::uint32_t i, int plane, const Vec<D, Real>& x, const Vec<D, Real>& v,
                           const Real& density) {
-    if (!kept_.empty()) blocks_.refill(model_, numbers_, i + blocks_.gap(plane), x, v, density);
+    if (!kept_.empty()) blocks_.lay(model_, numbers_, i + blocks_.gap(plane), x, v, density);
   }
   /// Both in one, for PPs that will not keep their order.
   void sum_once(FluidParticles<D>& fluid, const CellGrid<D>& grid);
@@ -114,6 +115,7 @@ class FluidPass {
   Centre centre(const FrozenInStep<D>& fp) const;
   template <class Kernel, bool transport>
   void sum_frozen(const std::vector<FrozenInStep<D>>& frozen, Lists& lists, std::vector<NeighbourSums<D>>& frozen_sums);
+  static constexpr std::uint32_t lanes = block_lanes<Numbers>;
   struct PairSums {
     NeighbourSums<D> centre, other;
   };

@@ -2,6 +2,8 @@
 // anew.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -23,13 +25,14 @@ class KeptLists {
     centres_.clear();
     blocks_.clear();
     named_.clear();
+    ordered_ = 0;
   }
 
   /// Adds those blocks of a centre that are `chosen`. They stand in rising order as far as two can be the same: a block
   /// on the border of two rows is found in both. Where `named`, only these lanes of them count, one a bit.
-  template <class Chosen, class NamedBlocks, class Lanes>
+  template <class Chosen, class NamedBlocks, class LanesOf>
   MAPPM_INLINE void add(std::uint32_t place, std::span<const std::uint32_t> blocks, const Chosen& chosen,
-                        const NamedBlocks& named, const Lanes& lanes) {
+                        const NamedBlocks& named, const LanesOf& partners) {
     const std::size_t first = blocks_.size();
     reserve_tightly(blocks_, first + blocks.size());
     blocks_.resize(first + blocks.size());
@@ -42,13 +45,17 @@ class KeptLists {
       count += again ? 0 : 1;
       if (Numbers::largest_extent == std::numeric_limits<double>::infinity() || !named(blocks[n])) continue;
       if (again)
-        named_.back().lanes |= lanes(n);
+        named_.back().partners |= partners(n);
       else
-        named_.push_back({static_cast<std::uint32_t>(first + count - 1), lanes(n)});
+        named_.push_back({static_cast<std::uint32_t>(first + count - 1), partners(n)});
     }
     blocks_.resize(first + count);
-    if (count > 0) centres_.push_back({place, static_cast<std::uint32_t>(first + count)});
+    if (count == 0) return;
+    centres_.push_back({place, static_cast<std::uint32_t>(first + count)});
+    if (centres_.size() % window == 0) order();
   }
+  /// After the last centre.
+  void close() { order(); }
 
   /// All pairs; `squares` is scratch of the caller's thread.
   template <class Kernel, bool transport>
@@ -62,7 +69,7 @@ class KeptLists {
                 detail::for_each_block<RealLanes>(
                     centres, base, blocks_.data(),
                     [&](std::size_t n)
-                        __attribute__((always_inline)) { return squares.data() + (n - base) * lane_count; },
+                        __attribute__((always_inline)) { return squares.data() + (n - base) * lanes; },
                     calls...);
               },
               [&](std::uint32_t place) { return blocks.centre(place); }, [](std::uint32_t) { return UnitFactor{}; },
@@ -70,6 +77,7 @@ class KeptLists {
         });
   }
 
+  static constexpr std::size_t window = 64;  // centres ordered at once: what they see stays in the nearest cache
   struct Centre {
     std::uint32_t particle, end;  // the place of the centre, and where its blocks end
   };
@@ -82,9 +90,9 @@ class KeptLists {
     auto named = named_.begin();
     for (std::size_t first = 0; first < centres_.size();) {
       std::size_t last = first + 1;
-      while (last < centres_.size() && centres_[last].end - base <= detail::blocks_at_once) ++last;
+      while (last < centres_.size() && centres_[last].end - base <= detail::blocks_at_once<Numbers>) ++last;
       const std::span chunk = std::span(centres_).subspan(first, last - first);
-      const std::size_t room = (chunk.back().end - base + detail::roots_ahead) * lane_count;
+      const std::size_t room = (chunk.back().end - base + detail::roots_ahead) * lanes;
       if (squares.size() < room) squares.resize(room);
       measure(numbers, blocks, chunk, base, named, squares.data());
       visit(chunk, base);
@@ -97,9 +105,10 @@ class KeptLists {
   std::span<const std::uint32_t> blocks() const { return blocks_; }
 
  private:
+  static constexpr std::uint32_t lanes = block_lanes<Numbers>;
   struct NamedLanes {
     std::uint32_t entry;  // in blocks_
-    std::uint8_t lanes;
+    std::uint16_t partners;
   };
   using Named = typename std::vector<NamedLanes>::const_iterator;
 
@@ -109,29 +118,61 @@ class KeptLists {
                std::size_t base, Named& named, Real* squares) const {
     std::size_t n = base;
     for (const Centre& centre : centres) {
-      const std::uint32_t own = centre.particle / lane_count, lane = centre.particle % lane_count;
+      const std::uint32_t own = centre.particle / lanes, lane = centre.particle % lanes;
       Vec<D, typename Numbers::Place> x;
       for (int axis = 0; axis < D; ++axis) x[axis] = blocks[own].x[axis][lane];
       const std::size_t first = n;
       for (; n < centre.end; ++n) {
         const Vec<D, RealLanes> r = detail::separation_of_block<false>(numbers, blocks[blocks_[n]], x);
-        dot(r, r).copy_to(squares + (n - base) * lane_count, std::experimental::vector_aligned);
+        dot(r, r).copy_to(squares + (n - base) * lanes, std::experimental::vector_aligned);
       }
       if (blocks_[first] == own) {
-        Real* const of_own = squares + (first - base) * lane_count;
+        Real* const of_own = squares + (first - base) * lanes;
         const RealLanes beside = RealLanes(static_cast<Real>(lane + 1)) - lane_numbers<RealLanes>();
         larger(RealLanes(of_own, std::experimental::vector_aligned), beside)
             .copy_to(of_own, std::experimental::vector_aligned);
       }
       for (; named != named_.end() && named->entry < centre.end; ++named)
-        for (std::uint32_t k = 0; k < lane_count; ++k)
-          if ((named->lanes >> k & 1) == 0) squares[(named->entry - base) * lane_count + k] = Real(1);
+        for (std::uint32_t k = 0; k < lanes; ++k)
+          if ((named->partners >> k & 1) == 0) squares[(named->entry - base) * lanes + k] = Real(1);
+    }
+  }
+
+  /// Sorts the centres since the last time by the number of their blocks.
+  void order() {
+    constexpr std::uint32_t most = 32;  // longer ones stay side by side as they are
+    const std::uint32_t base = ordered_ > 0 ? centres_[ordered_ - 1].end : 0;
+    unordered_.assign(centres_.begin() + static_cast<std::ptrdiff_t>(ordered_), centres_.end());
+    unordered_blocks_.assign(blocks_.begin() + base, blocks_.end());
+    const auto length = [&](std::size_t n) { return unordered_[n].end - (n > 0 ? unordered_[n - 1].end : base); };
+    std::array<std::uint32_t, most + 2> place{};  // of the next centre of each length
+    for (std::size_t n = 0; n < unordered_.size(); ++n) ++place[std::min(length(n), most) + 1];
+    for (std::size_t n = 1; n < place.size(); ++n) place[n] += place[n - 1];
+    sequence_.resize(unordered_.size());
+    for (std::uint32_t n = 0; n < unordered_.size(); ++n) sequence_[place[std::min(length(n), most)]++] = n;
+    const auto named = std::ranges::lower_bound(named_, base, {}, &NamedLanes::entry);
+    unordered_named_.assign(named, named_.end());
+    named_.erase(named, named_.end());
+    std::uint32_t end = base;
+    for (const std::uint32_t n : sequence_) {
+      const std::uint32_t first = unordered_[n].end - length(n);
+      for (auto lanes_of = std::ranges::lower_bound(unordered_named_, first, {}, &NamedLanes::entry);
+           lanes_of != unordered_named_.end() && lanes_of->entry < unordered_[n].end; ++lanes_of)
+        named_.push_back({lanes_of->entry - first + end, lanes_of->partners});
+      for (std::uint32_t entry = first; entry < unordered_[n].end; ++entry)
+        blocks_[end++] = unordered_blocks_[entry - base];
+      centres_[ordered_++] = {unordered_[n].particle, end};
     }
   }
 
   std::vector<Centre> centres_;
+  std::size_t ordered_ = 0;  // of them
   Column<std::uint32_t> blocks_;
   std::vector<NamedLanes> named_;  // in the order of the entries
+  // Of `order`.
+  std::vector<Centre> unordered_;
+  std::vector<std::uint32_t> unordered_blocks_, sequence_;
+  std::vector<NamedLanes> unordered_named_;
 };
 
 }  // namespace mappm

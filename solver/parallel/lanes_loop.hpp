@@ -71,7 +71,9 @@ MAPPM_INLINE void pair_block(const Numbers& numbers, PairBlock<D, Numbers>& bloc
 }
 
 inline constexpr std::size_t roots_ahead = 4;
-inline constexpr std::size_t blocks_at_once = 512 / lane_count;  // their distances stay in the nearest cache
+/// Their distances stay in the nearest cache.
+template <class Numbers>
+inline constexpr std::size_t blocks_at_once = 4096 / sizeof(typename Numbers::RealLanes);
 
 /// Calls visit(block, distances) for the blocks of each centre, between begin(particle) and end(particle). Of block n,
 /// from the given one to centres.back().end, squares(n) are the squared distances. They become distances, and so do
@@ -118,7 +120,7 @@ class PartnerLists {
     centres_.clear();
     size_ = 0;
   }
-  bool is_full() const { return size_ >= detail::blocks_at_once; }
+  bool is_full() const { return size_ >= detail::blocks_at_once<Numbers>; }
 
   /// Adds a particle with its ranges of places: range(n) for n < count.
   template <class RangeOf>
@@ -135,7 +137,7 @@ class PartnerLists {
         make_room(size + blocks + (count - n) * written);
         return add_rest(particle, x, count, range, n);
       }
-      write(columns, size, owner, first / lane_count, first, end);
+      write(columns, size, owner, first / lanes, first, end);
       size += blocks;
     }
     size_ = size;
@@ -146,9 +148,9 @@ class PartnerLists {
   template <class Visit>
   void for_each_partner(Visit&& visit) const {
     for (std::size_t n = 0; n < size_; ++n)
-      for (std::uint32_t lane = 0; lane < lane_count; ++lane)
+      for (std::uint32_t lane = 0; lane < lanes; ++lane)
         if (const auto number = static_cast<Real>(lane); number >= first_[n] && number <= last_[n])
-          visit(centres_[owner_[n]].particle, block_[n] * lane_count + lane);
+          visit(centres_[owner_[n]].particle, block_[n] * lanes + lane);
   }
 
   /// Works out the distances of all blocks, and drops those that have no partner within a reach, whose square is given
@@ -166,7 +168,7 @@ class PartnerLists {
                                       lane_numbers<RealLanes>() - RealLanes(columns.last[n])) *
                                RealLanes(square_of_reach);
       const RealLanes square = larger(dot(r, r), beside);
-      square.copy_to(columns.distance + n * lane_count, std::experimental::vector_aligned);
+      square.copy_to(columns.distance + n * lanes, std::experimental::vector_aligned);
       columns.used[n] = any_below(square, square_of_reach) ? 1 : 0;
     }
     // By itself: in the loop above every load would wait for the place of the store before it.
@@ -192,7 +194,7 @@ class PartnerLists {
     detail::for_each_block<RealLanes>(
         centres_, 0, columns.block,
         [&](std::size_t n)
-            __attribute__((always_inline)) { return columns.distance + std::size_t{columns.from[n]} * lane_count; },
+            __attribute__((always_inline)) { return columns.distance + std::size_t{columns.from[n]} * lanes; },
         begin, visit, end);
   }
 
@@ -205,15 +207,16 @@ class PartnerLists {
       visit(centre.particle, std::span(block_).subspan(begin, centre.end - begin), [&](std::size_t n) {
         const std::uint32_t from = from_[begin + n];
         const auto first = static_cast<int>(std::max(first_[from], Real(0)));
-        const auto last = static_cast<int>(std::min(last_[from], static_cast<Real>(lane_count - 1)));
-        return static_cast<std::uint8_t>((2u << last) - (1u << first));
+        const auto last = static_cast<int>(std::min(last_[from], static_cast<Real>(lanes - 1)));
+        return static_cast<std::uint16_t>((2u << last) - (1u << first));
       });
       begin = centre.end;
     }
   }
 
  private:
-  static constexpr std::uint32_t written = 8;  // blocks at once: longer ranges are rare
+  static constexpr std::uint32_t lanes = block_lanes<Numbers>;
+  static constexpr std::uint32_t written = std::max(8u, lanes);  // blocks at once: longer ranges are rare
   struct Centre {
     std::uint32_t particle, end;  // and where its blocks end
     Places x;
@@ -229,17 +232,17 @@ class PartnerLists {
   }
 
   static std::uint32_t blocks_of(std::uint32_t first, std::uint32_t end) {
-    return end > first ? (end - 1) / lane_count - first / lane_count + 1 : 0;
+    return end > first ? (end - 1) / lanes - first / lanes + 1 : 0;
   }
   /// Blocks from `begin` on; those behind the range will be overwritten.
   MAPPM_INLINE static void write(const Columns& columns, std::size_t at, std::uint32_t owner, std::uint32_t begin,
                                  std::uint32_t first, std::uint32_t end) {
-    const auto from = static_cast<Real>(static_cast<std::int32_t>(first - begin * lane_count));
-    const auto to = static_cast<Real>(static_cast<std::int32_t>(end - 1 - begin * lane_count));
+    const auto from = static_cast<Real>(static_cast<std::int32_t>(first - begin * lanes));
+    const auto to = static_cast<Real>(static_cast<std::int32_t>(end - 1 - begin * lanes));
     for (std::uint32_t n = 0; n < written; ++n) columns.block[at + n] = begin + n;
     for (std::uint32_t n = 0; n < written; ++n) columns.owner[at + n] = owner;
-    for (std::uint32_t n = 0; n < written; n += lane_count) {
-      const RealLanes passed = (lane_numbers<RealLanes>() + static_cast<Real>(n)) * static_cast<Real>(lane_count);
+    for (std::uint32_t n = 0; n < written; n += lanes) {
+      const RealLanes passed = (lane_numbers<RealLanes>() + static_cast<Real>(n)) * static_cast<Real>(lanes);
       (RealLanes(from) - passed).copy_to(columns.first + at + n, std::experimental::element_aligned);
       (RealLanes(to) - passed).copy_to(columns.last + at + n, std::experimental::element_aligned);
     }
@@ -254,7 +257,7 @@ class PartnerLists {
       const std::uint32_t blocks = blocks_of(first, end);
       make_room(size_ + blocks);
       for (std::uint32_t done = 0; done < blocks; done += written)
-        write(columns(), size_ + done, owner, first / lane_count + done, first, end);
+        write(columns(), size_ + done, owner, first / lanes + done, first, end);
       size_ += blocks;
     }
     centres_.push_back({particle, static_cast<std::uint32_t>(size_), x});
@@ -268,7 +271,7 @@ class PartnerLists {
     used_.resize(entries + written);
     first_.resize(entries + written);
     last_.resize(entries + written);
-    distance_.resize((entries + written) * lane_count);
+    distance_.resize((entries + written) * lanes);
   }
 
   std::size_t size_ = 0;

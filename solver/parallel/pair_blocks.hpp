@@ -14,10 +14,11 @@ namespace mappm {
 
 template <int D, class Numbers>
 struct alignas(sizeof(typename Numbers::RealLanes)) PairBlock {
-  typename Numbers::Place x[D][lane_count];
-  typename Numbers::Real v[D][lane_count];
-  typename Numbers::Real v2[lane_count], pv2[lane_count];
-  typename Numbers::Sum impulse[D][lane_count], shift[D][lane_count], density[lane_count];
+  static constexpr int lanes = block_lanes<Numbers>;
+  typename Numbers::Place x[D][lanes];
+  typename Numbers::Real v[D][lanes];
+  typename Numbers::Real v2[lanes], pv2[lanes];
+  typename Numbers::Sum impulse[D][lanes], shift[D][lanes], density[lanes];
 };
 
 /// The one particle of a loop over blocks: a PP or an FP.
@@ -44,68 +45,75 @@ class PairBlocks {
   void fill(const Model<D>& model, const Numbers& numbers, FluidParticles<D>& fluid, const CellGrid<D>& grid,
             Chosen&& chosen) {
     for (auto& values : fluid.field) {
-      // Whole lanes are read behind the last particle. They are no partners, but 0 times NaN would not be 0.
+      // Whole blocks are read behind the last particle. They are no partners, but 0 times NaN would not be 0.
       const std::size_t count = values.size();
-      reserve_tightly(values, count + lane_count);
-      values.resize(count + lane_count, 1.0);
+      reserve_tightly(values, count + lanes);
+      values.resize(count + lanes, 1.0);
       values.resize(count);
     }
     const int planes = grid.count(D - 1);
     gaps_.resize(static_cast<std::size_t>(planes));
     starts_.resize(static_cast<std::size_t>(planes));
-    std::uint32_t place = 0;
+    std::uint32_t places = 0;
     for (int plane = 0; plane < planes; ++plane) {
       const std::uint32_t first = grid.plane_start(plane), end = grid.plane_start(plane + 1);
       starts_[static_cast<std::size_t>(plane)] = first;
-      gaps_[static_cast<std::size_t>(plane)] = place - first;
-      place += (end - first + lane_count - 1) / lane_count * lane_count;
+      gaps_[static_cast<std::size_t>(plane)] = places - first;
+      places += (end - first + lanes - 1) / lanes * lanes;
     }
-    reserve_tightly(blocks_, place / lane_count);
-    blocks_.resize(place / lane_count);
+    reserve_tightly(blocks_, places / lanes);
+    blocks_.resize(places / lanes);
     for (int plane = 0; plane < planes; ++plane) {
       const std::uint32_t end = grid.plane_start(plane + 1);
-      for (std::uint32_t i = grid.plane_start(plane); i < end; i += lane_count) {
-        const std::uint32_t n = (i + gap(plane)) / lane_count;
-        if (!chosen(n)) continue;
-        Block& block = blocks_[n];
-        fill_block(model, numbers, fluid, i, block);
+      for (std::uint32_t i = grid.plane_start(plane); i < end; i += lanes) {
+        const std::uint32_t place = i + gap(plane);
+        if (!chosen(place / lanes)) continue;
+        for (std::uint32_t lane = 0; lane < lanes; lane += lane_count) {
+          Vec<D, Lanes> x, v;
+          for (int axis = 0; axis < D; ++axis) {
+            x[axis] = load_lanes(&fluid.x(axis)[i + lane]);
+            v[axis] = load_lanes(&fluid.v(axis)[i + lane]);
+          }
+          lay(model, numbers, place + lane, x, v, load_lanes(&fluid.density()[i + lane]));
+        }
         // Lanes of a gap are nobody's partners: they lie far from the plane.
-        for (std::uint32_t lane = end - i; lane < lane_count; ++lane)
-          block.x[D - 1][lane] = Numbers::far_from(block.x[D - 1][0]);
+        auto& slow = blocks_[place / lanes].x[D - 1];
+        for (std::uint32_t lane = end - i; lane < lanes; ++lane) slow[lane] = Numbers::far_from(slow[0]);
       }
     }
   }
 
-  /// PPs of the block that begins at `place`, or the one at `place`, after a motion. Their sums are set to zero.
-  MAPPM_INLINE void refill(const Model<D>& model, const Numbers& numbers, std::uint32_t place, const Vec<D, Lanes>& x,
-                           const Vec<D, Lanes>& v, const Lanes& density) {
-    Block& block = blocks_[place / lane_count];
-    lay(model, numbers, x, v, density, block);
-    clear(block);
-  }
-  MAPPM_INLINE void refill(const Model<D>& model, const Numbers& numbers, std::uint32_t place, const Vec<D, double>& x,
-                           const Vec<D, double>& v, double density) {
+  /// The PP at `place`, or as many from there on as there are lanes of the state: what they are, with sums of zero.
+  template <class Wide>
+  MAPPM_INLINE void lay(const Model<D>& model, const Numbers& numbers, std::uint32_t place, const Vec<D, Wide>& x,
+                        const Vec<D, Wide>& v, const Wide& density) {
     using Real = typename Numbers::Real;
-    Block& block = blocks_[place / lane_count];
-    const std::uint32_t lane = place % lane_count;
-    const auto volume = volume_terms(density, model.rest_density, 1.0, model.background);
+    using Sum = decltype(lanes_of<typename Numbers::Sum>(density));
+    Block& block = blocks_[place / lanes];
+    const std::uint32_t lane = place % lanes;
     for (int axis = 0; axis < D; ++axis) {
-      block.x[axis][lane] = numbers.place(axis, x[axis]);
-      block.v[axis][lane] = static_cast<Real>(v[axis]);
-      block.impulse[axis][lane] = block.shift[axis][lane] = 0;
+      store_lanes(numbers.place(axis, x[axis]), &block.x[axis][lane]);
+      store_lanes(lanes_of<Real>(v[axis]), &block.v[axis][lane]);
+      store_lanes(Sum(0), &block.impulse[axis][lane]);
+      store_lanes(Sum(0), &block.shift[axis][lane]);
     }
-    block.v2[lane] = static_cast<Real>(volume.v2);
-    block.pv2[lane] = static_cast<Real>(volume.pv2);
-    block.density[lane] = 0;
+    const auto volume = volume_terms(density, model.rest_density, 1.0, model.background);
+    store_lanes(lanes_of<Real>(volume.v2), &block.v2[lane]);
+    store_lanes(lanes_of<Real>(volume.pv2), &block.pv2[lane]);
+    store_lanes(Sum(0), &block.density[lane]);
   }
 
   Block* data() { return blocks_.data(); }
-  std::size_t place_count() const { return blocks_.size() * lane_count; }
+  std::size_t size() const { return blocks_.size(); }
   /// The block of a place alone, with sums of zero.
   PairBlocks one(std::uint32_t place) const {
     PairBlocks result;
-    result.blocks_.push_back(blocks_[place / lane_count]);
-    clear(result.blocks_.front());
+    Block& block = result.blocks_.emplace_back(blocks_[place / lanes]);
+    for (int axis = 0; axis < D; ++axis) {
+      std::ranges::fill(block.impulse[axis], 0);
+      std::ranges::fill(block.shift[axis], 0);
+    }
+    std::ranges::fill(block.density, 0);
     return result;
   }
   /// Place of a PP of a plane less its index.
@@ -116,8 +124,8 @@ class PairBlocks {
   }
 
   MAPPM_INLINE PairCentre<D, Numbers> centre(std::uint32_t place) const {
-    const Block& block = blocks_[place / lane_count];
-    const std::uint32_t lane = place % lane_count;
+    const Block& block = blocks_[place / lanes];
+    const std::uint32_t lane = place % lanes;
     PairCentre<D, Numbers> centre;
     for (int axis = 0; axis < D; ++axis) {
       centre.x[axis] = block.x[axis][lane];
@@ -127,8 +135,8 @@ class PairBlocks {
     return centre;
   }
   MAPPM_INLINE void add(std::uint32_t place, const Sums& sums) {
-    Block& block = blocks_[place / lane_count];
-    const std::uint32_t lane = place % lane_count;
+    Block& block = blocks_[place / lanes];
+    const std::uint32_t lane = place % lanes;
     for (int axis = 0; axis < D; ++axis) {
       block.impulse[axis][lane] += sums.impulse[axis];
       block.shift[axis][lane] += sums.shift[axis];
@@ -136,8 +144,8 @@ class PairBlocks {
     block.density[lane] += sums.density;
   }
   Sums sums(std::uint32_t place) const {
-    const Block& block = blocks_[place / lane_count];
-    const std::uint32_t lane = place % lane_count;
+    const Block& block = blocks_[place / lanes];
+    const std::uint32_t lane = place % lanes;
     Sums sums;
     for (int axis = 0; axis < D; ++axis) {
       sums.impulse[axis] = block.impulse[axis][lane];
@@ -146,49 +154,21 @@ class PairBlocks {
     sums.density = block.density[lane];
     return sums;
   }
-  /// Of all PPs of the block that begins at `place`.
+  /// Of as many PPs from `place` on as there are lanes of the state.
   MAPPM_INLINE auto sums_of_lanes(std::uint32_t place) const {
-    const Block& block = blocks_[place / lane_count];
-    PairResult<D, decltype(load_lanes(block.density))> sums;
+    const Block& block = blocks_[place / lanes];
+    const std::uint32_t lane = place % lanes;
+    PairResult<D, decltype(load_as_many(block.density))> sums;
     for (int axis = 0; axis < D; ++axis) {
-      sums.impulse[axis] = load_lanes(block.impulse[axis]);
-      sums.shift[axis] = load_lanes(block.shift[axis]);
+      sums.impulse[axis] = load_as_many(&block.impulse[axis][lane]);
+      sums.shift[axis] = load_as_many(&block.shift[axis][lane]);
     }
-    sums.density = load_lanes(block.density);
+    sums.density = load_as_many(&block.density[lane]);
     return sums;
   }
 
  private:
-  static void fill_block(const Model<D>& model, const Numbers& numbers, const FluidParticles<D>& fluid, std::size_t i,
-                         Block& block) {
-    Vec<D, Lanes> x, v;
-    for (int axis = 0; axis < D; ++axis) {
-      x[axis] = load_lanes(&fluid.x(axis)[i]);
-      v[axis] = load_lanes(&fluid.v(axis)[i]);
-    }
-    lay(model, numbers, x, v, load_lanes(&fluid.density()[i]), block);
-    clear(block);
-  }
-  MAPPM_INLINE static void lay(const Model<D>& model, const Numbers& numbers, const Vec<D, Lanes>& x,
-                               const Vec<D, Lanes>& v, const Lanes& density, Block& block) {
-    using Real = typename Numbers::Real;
-    for (int axis = 0; axis < D; ++axis) {
-      store_lanes(numbers.place(axis, x[axis]), block.x[axis]);
-      store_lanes(lanes_of<Real>(v[axis]), block.v[axis]);
-    }
-    const auto volume = volume_terms(density, model.rest_density, 1.0, model.background);
-    store_lanes(lanes_of<Real>(volume.v2), block.v2);
-    store_lanes(lanes_of<Real>(volume.pv2), block.pv2);
-  }
-  static void clear(Block& block) {
-    using SumLanes = decltype(load_lanes(block.density));
-    for (int axis = 0; axis < D; ++axis) {
-      store_lanes(SumLanes(0), block.impulse[axis]);
-      store_lanes(SumLanes(0), block.shift[axis]);
-    }
-    store_lanes(SumLanes(0), block.density);
-  }
-
+  static constexpr std::uint32_t lanes = block_lanes<Numbers>;
   std::vector<std::uint32_t> starts_, gaps_;  // of each plane: its first index; its places less its indices
   Column<Block> blocks_;
 };

@@ -89,11 +89,9 @@ class SinglePairs {
   double seen(int axis, double x) const { return static_cast<double>(to_fixed(x / place_[axis])) * place_[axis]; }
   float difference(int axis, double quanta) const { return static_cast<float>(quanta / place_[axis]); }
   /// The low 32 bits of a position in units of a place: differences wrap, and are right within half a window.
-  MAPPM_INLINE std::int32_t place(int axis, double x) const {
-    return static_cast<std::int32_t>(static_cast<std::uint64_t>(to_fixed(x / place_[axis])));
-  }
-  MAPPM_INLINE auto place(int axis, const Lanes& x) const {
-    return lanes_of<std::int32_t>(to_fixed(x * Lanes(1.0 / place_[axis])));
+  template <class Wide>
+  MAPPM_INLINE auto place(int axis, const Wide& x) const {
+    return lanes_of<std::int32_t>(to_fixed(x * Wide(1.0 / place_[axis])));
   }
   MAPPM_INLINE static FloatLanes apart(const Int32Lanes& a, const Int32Lanes& b) {
     return lanes_of<float>(wrapped_difference(a, b));
@@ -104,6 +102,7 @@ class SinglePairs {
   /// Sums keep their momentum exactly: a quantum here is a whole number of those of the state.
   template <class Integer>
   MAPPM_INLINE auto sums(const PairResult<D, Integer>& given) const {
+    const auto widened = [](const Integer& sum) { return lanes_of<std::int64_t>(sum); };
     using Wide = decltype(widened(given.density));
     NeighbourSums<D, Wide> sums;
     for (int axis = 0; axis < D; ++axis) {
@@ -128,6 +127,10 @@ class SinglePairs {
   }
   PairLaw<D, float> law_;
 };
+
+/// PPs in a block of lanes.
+template <class Numbers>
+inline constexpr int block_lanes = static_cast<int>(Numbers::RealLanes::size());
 
 /// The pair of two points. difference(a, b): of two positions on one axis, quanta; it decides on the periodic image.
 template <int D, class Numbers, class Difference>
