@@ -37,10 +37,7 @@ class Counted {
   friend Counted operator/(const Counted& a, const Counted& b) {
     return a.with(b, a.value_ / b.value_, &Operations::roots);
   }
-  /// An addition and a subtraction of bits.
-  friend Counted to_fixed(const Counted& x) {
-    return x.with(x, x.value_, &Operations::additions).with(x, x.value_, &Operations::integers);
-  }
+  friend Counted to_fixed_with_excess(const Counted& x) { return x.with(x, x.value_, &Operations::additions); }
   friend Counted square_root(const Counted& x) { return x.with(x, std::sqrt(x.value_), &Operations::roots); }
   /// Where additions are made.
   friend Counted larger(const Counted& a, const Counted& b) {
@@ -67,8 +64,4 @@ class Counted {
 template <>
 struct mappm::ScalarOf<mappm::bench::Counted> {
   using Type = double;
-};
-template <>
-struct mappm::FixedOf<mappm::bench::Counted> {
-  using Type = bench::Counted;
 };

@@ -122,7 +122,7 @@ BlockWork work_of_pairs(const Model<D>& model) {
     pair.v = Vec<D, Counted>{} - of_lanes<D>(operations);
     pair.v2 = Counted() + Counted::of_lanes(1.0, operations);
     pair.pv2 = Counted() + Counted::of_lanes(1.0, operations);
-    fluid_pair<Kernel, transport>(model.pair, pair, r, q, Counted(1.0));
+    fluid_pair<Kernel, transport, typename DoublePairs<D>::ListRounding>(model.pair, pair, r, q, Counted(1.0));
     operations.integers += 2 * components;    // to the partner and to the centre
     work.loads = 2 * D + 2 + components + 2;  // places, velocities, volume terms, sums; the square and its root
     work.stores = components + 1;             // sums; the root

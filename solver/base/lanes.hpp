@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <experimental/simd>
+#include <type_traits>
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
@@ -24,6 +25,7 @@ using Simd = std::experimental::simd<T, Abi>;
 
 using Lanes = std::experimental::native_simd<double>;
 using IntLanes = std::experimental::rebind_simd_t<std::int64_t, Lanes>;
+using UIntLanes = std::experimental::rebind_simd_t<std::uint64_t, Lanes>;
 inline constexpr int lane_count = static_cast<int>(Lanes::size());
 static_assert(sizeof(Lanes) == sizeof(IntLanes), "a lane of integers must be as wide as a lane of doubles");
 
@@ -44,10 +46,12 @@ MAPPM_INLINE To same_bits(const From& from) {
 
 }  // namespace detail
 
-/// Same rounding as the scalar `to_fixed`, in every lane.
+/// Same rounding as the scalar functions, in every lane.
+MAPPM_INLINE UIntLanes to_fixed_with_excess(const Lanes& x) {
+  return detail::same_bits<UIntLanes>(x + Lanes(rounding_constant));
+}
 MAPPM_INLINE IntLanes to_fixed(const Lanes& x) {
-  return detail::same_bits<IntLanes>(x + Lanes(rounding_constant)) -
-         IntLanes(std::bit_cast<std::int64_t>(rounding_constant));
+  return detail::same_bits<IntLanes>(to_fixed_with_excess(x) - UIntLanes(rounding_excess));
 }
 MAPPM_INLINE Int32Lanes to_fixed(const FloatLanes& x) {
 #if defined(__AVX512F__)
@@ -113,13 +117,11 @@ MAPPM_INLINE Lanes magnitude(const Lanes& x) { return std::experimental::abs(x);
 MAPPM_INLINE double real_of(std::int64_t x) { return static_cast<double>(x); }
 MAPPM_INLINE Lanes real_of(const IntLanes& x) { return std::experimental::static_simd_cast<Lanes>(x); }
 
-MAPPM_INLINE Lanes load_lanes(const double* from) { return Lanes(from, std::experimental::element_aligned); }
-MAPPM_INLINE FloatLanes load_lanes(const float* from) { return FloatLanes(from, std::experimental::element_aligned); }
-MAPPM_INLINE IntLanes load_lanes(const std::int64_t* from) {
-  return IntLanes(from, std::experimental::element_aligned);
-}
-MAPPM_INLINE Int32Lanes load_lanes(const std::int32_t* from) {
-  return Int32Lanes(from, std::experimental::element_aligned);
+/// As many numbers as a register holds.
+template <class T>
+MAPPM_INLINE auto load_lanes(const T* from) {
+  using Widest = std::conditional_t<sizeof(T) == sizeof(double), Lanes, FloatLanes>;
+  return std::experimental::rebind_simd_t<T, Widest>(from, std::experimental::element_aligned);
 }
 template <class T, class Abi>
 MAPPM_INLINE void store_lanes(const Simd<T, Abi>& lanes, T* to) {
@@ -146,6 +148,18 @@ template <class T, class U, class Abi>
 MAPPM_INLINE auto lanes_of(const Simd<U, Abi>& lanes) {
   return std::experimental::static_simd_cast<std::experimental::rebind_simd_t<T, Simd<U, Abi>>>(lanes);
 }
+
+/// The type in which sums of a type are modulo a power of two, as its own need not be.
+template <class T>
+struct WrappingOf {
+  using Type = T;
+};
+template <std::integral T>
+struct WrappingOf<T> {
+  using Type = std::make_unsigned_t<T>;
+};
+template <class T>
+using Wrapping = typename WrappingOf<T>::Type;
 
 /// Modulo 2^32.
 MAPPM_INLINE Int32Lanes wrapped_difference(const Int32Lanes& a, const Int32Lanes& b) {

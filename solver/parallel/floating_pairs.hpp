@@ -16,7 +16,9 @@ class FloatingPairs : public DoublePairs<D> {
     MAPPM_INLINE static Real of(const Real& x) {
       return x;
     }
+    static constexpr std::uint64_t excess = 0;
   };
+  using ListRounding = Rounding;
   using Sum = double;
   using DoublePairs<D>::DoublePairs;
 

@@ -91,7 +91,7 @@ void FluidPass<D, Numbers>::sum_once(FluidParticles<D>& fluid, const CellGrid<D>
           sum_lists<Kernel, transport, false>(
               numbers_, blocks_.data(), lists, [&](std::uint32_t i) { return blocks_.centre(i); },
               [](std::uint32_t) { return UnitFactor{}; },
-              [&](std::uint32_t i, const Sums& sums) { blocks_.add(i, sums); });
+              [&](std::uint32_t i, const auto& sums) { blocks_.add(i, sums); });
         });
       });
     });
@@ -132,7 +132,7 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
         });
       });
     });
-    for (const Part part : {inner, rest}) kept_[parts * band + part].close();
+    for (const Part part : {inner, rest}) blocks_.expect(kept_[parts * band + part].blocks());
   });
 }
 
@@ -280,7 +280,7 @@ void FluidPass<D, Numbers>::sum_frozen(const std::vector<FrozenInStep<D>>& froze
   sum_lists<Kernel, transport, true>(
       numbers_, blocks_.data(), lists, [&](std::uint32_t k) { return centre(frozen[k]); },
       [&](std::uint32_t k) { return NoSlipFactor<D, typename Numbers::Real>(model_, frozen[k]); },
-      [&](std::uint32_t k, const Sums& sums) { frozen_sums[k] = numbers_.sums(sums); });
+      [&](std::uint32_t k, const auto& sums) { frozen_sums[k] = numbers_.sums(sums); });
 }
 
 /// One pair as the pass would compute it, alone: what it adds to the centre and to the PP at a place.
@@ -295,7 +295,7 @@ auto FluidPass<D, Numbers>::sums_of_pair(const Centre& centre, std::uint32_t pla
   PairSums result;
   sum_lists<Kernel, transport, lanes_first>(
       numbers_, alone.data(), partner, [&](std::uint32_t) { return centre; }, [&](std::uint32_t) { return beta; },
-      [&](std::uint32_t, const Sums& sums) { result.centre = numbers_.sums(sums); });
+      [&](std::uint32_t, const auto& sums) { result.centre = numbers_.sums(sums); });
   result.other = numbers_.sums(alone.sums(lane));
   return result;
 }

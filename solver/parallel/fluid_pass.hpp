@@ -97,7 +97,6 @@ class FluidPass {
  private:
   enum Part : std::size_t { inner, rest, parts };
   using Centre = PairCentre<D, Numbers>;
-  using Sums = PairResult<D, typename Numbers::Sum>;
   /// What a thread searches with.
   struct Search {
     NearRows<D> near;

@@ -2,8 +2,6 @@
 // anew.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -25,7 +23,6 @@ class KeptLists {
     centres_.clear();
     blocks_.clear();
     named_.clear();
-    ordered_ = 0;
   }
 
   /// Adds those blocks of a centre that are `chosen`. They stand in rising order as far as two can be the same: a block
@@ -50,26 +47,23 @@ class KeptLists {
         named_.push_back({static_cast<std::uint32_t>(first + count - 1), partners(n)});
     }
     blocks_.resize(first + count);
-    if (count == 0) return;
-    centres_.push_back({place, static_cast<std::uint32_t>(first + count)});
-    if (centres_.size() % window == 0) order();
+    if (count > 0) centres_.push_back({place, static_cast<std::uint32_t>(first + count)});
   }
-  /// After the last centre.
-  void close() { order(); }
 
-  /// All pairs; `squares` is scratch of the caller's thread.
+  /// All pairs, with the excess of Numbers::ListRounding on what blocks receive; `squares` is scratch of the caller's thread.
   template <class Kernel, bool transport>
   void sum(const Numbers& numbers, PairBlocks<D, Numbers>& blocks, Column<Real>& squares) const {
     for_each_chunk(
         numbers, blocks.data(),
         squares, [&](std::span<const Centre> centres, std::size_t base) __attribute__((always_inline)) {
-          sum_blocks<Kernel, transport, false, D>(
+          Real* const distances = squares.data();
+          sum_blocks<Kernel, transport, false, typename Numbers::ListRounding, D>(
               numbers, blocks.data(),
               [&](auto&&... calls) __attribute__((always_inline)) {
                 detail::for_each_block<RealLanes>(
                     centres, base, blocks_.data(),
-                    [&](std::size_t n)
-                        __attribute__((always_inline)) { return squares.data() + (n - base) * lanes; },
+                    [distances, base](std::size_t n)
+                        __attribute__((always_inline)) { return distances + (n - base) * lanes; },
                     calls...);
               },
               [&](std::uint32_t place) { return blocks.centre(place); }, [](std::uint32_t) { return UnitFactor{}; },
@@ -77,7 +71,6 @@ class KeptLists {
         });
   }
 
-  static constexpr std::size_t window = 64;  // centres ordered at once: what they see stays in the nearest cache
   struct Centre {
     std::uint32_t particle, end;  // the place of the centre, and where its blocks end
   };
@@ -117,13 +110,15 @@ class KeptLists {
   void measure(const Numbers& numbers, const PairBlock<D, Numbers>* blocks, std::span<const Centre> centres,
                std::size_t base, Named& named, Real* squares) const {
     std::size_t n = base;
+    const Numbers same = numbers;  // as far as the compiler sees, what is stored below could change another's
+    const std::uint32_t* const entries = blocks_.data();
     for (const Centre& centre : centres) {
       const std::uint32_t own = centre.particle / lanes, lane = centre.particle % lanes;
       Vec<D, typename Numbers::Place> x;
       for (int axis = 0; axis < D; ++axis) x[axis] = blocks[own].x[axis][lane];
       const std::size_t first = n;
-      for (; n < centre.end; ++n) {
-        const Vec<D, RealLanes> r = detail::separation_of_block<false>(numbers, blocks[blocks_[n]], x);
+      for (const std::size_t end = centre.end; n < end; ++n) {
+        const Vec<D, RealLanes> r = detail::separation_of_block<false>(same, blocks[entries[n]], x);
         dot(r, r).copy_to(squares + (n - base) * lanes, std::experimental::vector_aligned);
       }
       if (blocks_[first] == own) {
@@ -138,41 +133,9 @@ class KeptLists {
     }
   }
 
-  /// Sorts the centres since the last time by the number of their blocks.
-  void order() {
-    constexpr std::uint32_t most = 32;  // longer ones stay side by side as they are
-    const std::uint32_t base = ordered_ > 0 ? centres_[ordered_ - 1].end : 0;
-    unordered_.assign(centres_.begin() + static_cast<std::ptrdiff_t>(ordered_), centres_.end());
-    unordered_blocks_.assign(blocks_.begin() + base, blocks_.end());
-    const auto length = [&](std::size_t n) { return unordered_[n].end - (n > 0 ? unordered_[n - 1].end : base); };
-    std::array<std::uint32_t, most + 2> place{};  // of the next centre of each length
-    for (std::size_t n = 0; n < unordered_.size(); ++n) ++place[std::min(length(n), most) + 1];
-    for (std::size_t n = 1; n < place.size(); ++n) place[n] += place[n - 1];
-    sequence_.resize(unordered_.size());
-    for (std::uint32_t n = 0; n < unordered_.size(); ++n) sequence_[place[std::min(length(n), most)]++] = n;
-    const auto named = std::ranges::lower_bound(named_, base, {}, &NamedLanes::entry);
-    unordered_named_.assign(named, named_.end());
-    named_.erase(named, named_.end());
-    std::uint32_t end = base;
-    for (const std::uint32_t n : sequence_) {
-      const std::uint32_t first = unordered_[n].end - length(n);
-      for (auto lanes_of = std::ranges::lower_bound(unordered_named_, first, {}, &NamedLanes::entry);
-           lanes_of != unordered_named_.end() && lanes_of->entry < unordered_[n].end; ++lanes_of)
-        named_.push_back({lanes_of->entry - first + end, lanes_of->partners});
-      for (std::uint32_t entry = first; entry < unordered_[n].end; ++entry)
-        blocks_[end++] = unordered_blocks_[entry - base];
-      centres_[ordered_++] = {unordered_[n].particle, end};
-    }
-  }
-
   std::vector<Centre> centres_;
-  std::size_t ordered_ = 0;  // of them
   Column<std::uint32_t> blocks_;
   std::vector<NamedLanes> named_;  // in the order of the entries
-  // Of `order`.
-  std::vector<Centre> unordered_;
-  std::vector<std::uint32_t> unordered_blocks_, sequence_;
-  std::vector<NamedLanes> unordered_named_;
 };
 
 }  // namespace mappm

@@ -15,7 +15,8 @@ namespace detail {
 
 template <class Sum, class SumLanes>
 MAPPM_INLINE void add_to(Sum* sums, const SumLanes& given) {
-  store_lanes(load_lanes(sums) + given, sums);
+  auto* const wrapping = reinterpret_cast<Wrapping<Sum>*>(sums);
+  store_lanes(load_lanes(wrapping) + lanes_of<Wrapping<Sum>>(given), wrapping);
 }
 
 template <int D, class SumLanes>
@@ -44,7 +45,8 @@ MAPPM_INLINE Vec<D, typename Numbers::RealLanes> separation_of_block(const Numbe
 }
 
 /// One block of lanes at the distances `q`.
-template <class Kernel, bool transport, bool lanes_first, int D, class Numbers, class RealLanes, class Beta, class Sums>
+template <class Kernel, bool transport, bool lanes_first, class Rounding, int D, class Numbers, class RealLanes,
+          class Beta, class Sums>
 MAPPM_INLINE void pair_block(const Numbers& numbers, PairBlock<D, Numbers>& block, const PairCentre<D, Numbers>& centre,
                              const RealLanes& q, const Beta& beta, Sums& sums) {
   const Vec<D, RealLanes> r = separation_of_block<lanes_first>(numbers, block, centre.x);
@@ -55,7 +57,7 @@ MAPPM_INLINE void pair_block(const Numbers& numbers, PairBlock<D, Numbers>& bloc
   }
   pair.v2 = RealLanes(centre.volume.v2) + load_lanes(block.v2);
   pair.pv2 = RealLanes(centre.volume.pv2) + load_lanes(block.pv2);
-  const auto given = fluid_pair<Kernel, transport, typename Numbers::Rounding>(numbers.law(), pair, r, q, beta(r));
+  const auto given = fluid_pair<Kernel, transport, Rounding>(numbers.law(), pair, r, q, beta(r));
   for (int axis = 0; axis < D; ++axis) {
     const auto impulse = lanes_first ? given.impulse[axis] : -given.impulse[axis];
     add_to(block.impulse[axis], impulse);
@@ -75,8 +77,8 @@ inline constexpr std::size_t roots_ahead = 4;
 template <class Numbers>
 inline constexpr std::size_t blocks_at_once = 4096 / sizeof(typename Numbers::RealLanes);
 
-/// Calls visit(block, distances) for the blocks of each centre, between begin(particle) and end(particle). Of block n,
-/// from the given one to centres.back().end, squares(n) are the squared distances. They become distances, and so do
+/// Calls visit(block, distances) for the blocks of each centre, between begin(particle, their number) and
+/// end(particle). Of block n, from the given one to centres.back().end, squares(n) are the squared distances. They become distances, and so do
 /// `roots_ahead` squares behind the last.
 template <class RealLanes, class Centres, class Squares, class Begin, class Visit, class End>
 MAPPM_INLINE void for_each_block(const Centres& centres, std::size_t n, const std::uint32_t* blocks, Squares&& squares,
@@ -88,8 +90,8 @@ MAPPM_INLINE void for_each_block(const Centres& centres, std::size_t n, const st
   };
   for (std::size_t at = n; at < n + roots_ahead; ++at) take_root(at);
   for (const auto& centre : centres) {
-    begin(centre.particle);
-    for (; n < centre.end; ++n) {
+    begin(centre.particle, centre.end - n);
+    for (const std::size_t last = centre.end; n < last; ++n) {
       take_root(n + roots_ahead);
       visit(blocks[n], RealLanes(squares(n), std::experimental::vector_aligned));
     }
@@ -186,8 +188,8 @@ class PartnerLists {
     size_ = kept;
   }
 
-  /// After `measure`: calls visit(block, distances) for the blocks of each centre, between begin(particle) and
-  /// end(particle).
+  /// After `measure`: calls visit(block, distances) for the blocks of each centre, between begin(particle, their
+  /// number) and end(particle).
   template <class Begin, class Visit, class End>
   MAPPM_INLINE void for_each_block(Begin&& begin, Visit&& visit, End&& end) {
     const Columns columns = this->columns();
@@ -283,22 +285,25 @@ class PartnerLists {
 
 /// All pairs of the lists: adds to the sums of the partners, and calls receive(particle, sums) with what each centre
 /// receives. `walk` calls for_each_block. centre_of(n) gives a PairCentre, beta_of(n) a function of the separation.
-/// Zeros are added to lanes beside the partners.
-template <class Kernel, bool transport, bool lanes_first, int D, class Numbers, class Walk, class CentreOf,
-          class BetaOf, class Receive>
+/// Zeros are added to lanes beside the partners, and to all of a block the excess of the rounding.
+template <class Kernel, bool transport, bool lanes_first, class Rounding, int D, class Numbers, class Walk,
+          class CentreOf, class BetaOf, class Receive>
 MAPPM_INLINE void sum_blocks(const Numbers& numbers, PairBlock<D, Numbers>* const blocks, Walk&& walk,
                              CentreOf&& centre_of, BetaOf&& beta_of, Receive&& receive) {
-  PairResult<D, decltype(load_lanes(blocks->density))> sums;
+  using SumLanes = typename Rounding::template Sum<typename Numbers::RealLanes>;
+  static_assert(Rounding::excess == 0 || !lanes_first, "the signs below");
+  PairResult<D, SumLanes> sums;
   PairCentre<D, Numbers> centre;
   std::decay_t<decltype(beta_of(0))> beta = beta_of(0);
   walk(
-      [&](std::uint32_t n) __attribute__((always_inline)) {
+      [&](std::uint32_t n, std::size_t count) __attribute__((always_inline)) {
         centre = centre_of(n);
         beta = beta_of(n);
-        sums = {};
+        sums.density = static_cast<Scalar<SumLanes>>(-Rounding::excess * count);
+        for (int axis = 0; axis < D; ++axis) sums.impulse[axis] = sums.shift[axis] = sums.density;
       },
       [&](std::uint32_t block, const typename Numbers::RealLanes& q) __attribute__((always_inline)) {
-        detail::pair_block<Kernel, transport, lanes_first>(numbers, blocks[block], centre, q, beta, sums);
+        detail::pair_block<Kernel, transport, lanes_first, Rounding>(numbers, blocks[block], centre, q, beta, sums);
       },
       [&](std::uint32_t n) __attribute__((always_inline)) { receive(n, detail::total(sums)); });
 }
@@ -309,7 +314,7 @@ template <class Kernel, bool transport, bool lanes_first, int D, class Numbers, 
 void sum_lists(const Numbers& numbers, PairBlock<D, Numbers>* const blocks, PartnerLists<D, Numbers>& lists,
                CentreOf&& centre_of, BetaOf&& beta_of, Receive&& receive) {
   lists.template measure<lanes_first>(numbers, blocks, 1);
-  sum_blocks<Kernel, transport, lanes_first, D>(
+  sum_blocks<Kernel, transport, lanes_first, typename Numbers::Rounding, D>(
       numbers, blocks, [&](auto&&... calls) __attribute__((always_inline)) { lists.for_each_block(calls...); },
       centre_of, beta_of, receive);
 }

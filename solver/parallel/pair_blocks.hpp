@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/column.hpp"
@@ -35,11 +36,13 @@ template <int D, class Numbers>
 class PairBlocks {
  public:
   using Block = PairBlock<D, Numbers>;
-  using Sums = PairResult<D, typename Numbers::Sum>;
+  using Sum = typename Numbers::Sum;
 
   /// Sums are set to zero. `fluid` is in the order of `grid`. With `chosen` only those blocks for which chosen(block).
   void fill(const Model<D>& model, const Numbers& numbers, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
+    shifts_ = model.terms.transport;
     fill(model, numbers, fluid, grid, [](std::uint32_t) { return true; });
+    contributions_.assign(size(), 0);
   }
   template <class Chosen>
   void fill(const Model<D>& model, const Numbers& numbers, FluidParticles<D>& fluid, const CellGrid<D>& grid,
@@ -88,19 +91,19 @@ class PairBlocks {
   MAPPM_INLINE void lay(const Model<D>& model, const Numbers& numbers, std::uint32_t place, const Vec<D, Wide>& x,
                         const Vec<D, Wide>& v, const Wide& density) {
     using Real = typename Numbers::Real;
-    using Sum = decltype(lanes_of<typename Numbers::Sum>(density));
+    const auto zero = lanes_of<Sum>(Wide(0.0));
     Block& block = blocks_[place / lanes];
     const std::uint32_t lane = place % lanes;
     for (int axis = 0; axis < D; ++axis) {
       store_lanes(numbers.place(axis, x[axis]), &block.x[axis][lane]);
       store_lanes(lanes_of<Real>(v[axis]), &block.v[axis][lane]);
-      store_lanes(Sum(0), &block.impulse[axis][lane]);
-      store_lanes(Sum(0), &block.shift[axis][lane]);
+      store_lanes(zero, &block.impulse[axis][lane]);
+      store_lanes(zero, &block.shift[axis][lane]);
     }
     const auto volume = volume_terms(density, model.rest_density, 1.0, model.background);
     store_lanes(lanes_of<Real>(volume.v2), &block.v2[lane]);
     store_lanes(lanes_of<Real>(volume.pv2), &block.pv2[lane]);
-    store_lanes(Sum(0), &block.density[lane]);
+    store_lanes(zero, &block.density[lane]);
   }
 
   Block* data() { return blocks_.data(); }
@@ -114,6 +117,7 @@ class PairBlocks {
       std::ranges::fill(block.shift[axis], 0);
     }
     std::ranges::fill(block.density, 0);
+    result.contributions_.assign(1, 0);
     return result;
   }
   /// Place of a PP of a plane less its index.
@@ -134,41 +138,60 @@ class PairBlocks {
     centre.volume = {block.v2[lane], block.pv2[lane]};
     return centre;
   }
-  MAPPM_INLINE void add(std::uint32_t place, const Sums& sums) {
+  template <class Given>
+  MAPPM_INLINE void add(std::uint32_t place, const PairResult<D, Given>& given) {
     Block& block = blocks_[place / lanes];
     const std::uint32_t lane = place % lanes;
+    const auto add_to = [](Sum& sum, Given more) {
+      sum = static_cast<Sum>(static_cast<Wrapping<Sum>>(sum) + static_cast<Wrapping<Sum>>(more));
+    };
     for (int axis = 0; axis < D; ++axis) {
-      block.impulse[axis][lane] += sums.impulse[axis];
-      block.shift[axis][lane] += sums.shift[axis];
+      add_to(block.impulse[axis][lane], given.impulse[axis]);
+      add_to(block.shift[axis][lane], given.shift[axis]);
     }
-    block.density[lane] += sums.density;
+    add_to(block.density[lane], given.density);
   }
-  Sums sums(std::uint32_t place) const {
-    const Block& block = blocks_[place / lanes];
-    const std::uint32_t lane = place % lanes;
-    Sums sums;
-    for (int axis = 0; axis < D; ++axis) {
-      sums.impulse[axis] = block.impulse[axis][lane];
-      sums.shift[axis] = block.shift[axis][lane];
-    }
-    sums.density = block.density[lane];
-    return sums;
+  /// Tells which blocks the lists will add to, one by one, with the excess of their rounding. Valid until all are
+  /// filled.
+  void expect(std::span<const std::uint32_t> blocks) {
+    if constexpr (Numbers::ListRounding::excess != 0)
+      for (const std::uint32_t block : blocks) ++contributions_[block];
+  }
+  PairResult<D, Sum> sums(std::uint32_t place) const {
+    return sums_of(place, [](const Sum* sum) { return static_cast<Wrapping<Sum>>(*sum); });
   }
   /// Of as many PPs from `place` on as there are lanes of the state.
   MAPPM_INLINE auto sums_of_lanes(std::uint32_t place) const {
-    const Block& block = blocks_[place / lanes];
-    const std::uint32_t lane = place % lanes;
-    PairResult<D, decltype(load_as_many(block.density))> sums;
-    for (int axis = 0; axis < D; ++axis) {
-      sums.impulse[axis] = load_as_many(&block.impulse[axis][lane]);
-      sums.shift[axis] = load_as_many(&block.shift[axis][lane]);
-    }
-    sums.density = load_as_many(&block.density[lane]);
-    return sums;
+    return sums_of(place, [](const Sum* sums) { return lanes_of<Wrapping<Sum>>(load_as_many(sums)); });
   }
 
  private:
   static constexpr std::uint32_t lanes = block_lanes<Numbers>;
+
+  /// load(from): sums from there on, as numbers that wrap.
+  template <class Load>
+  MAPPM_INLINE auto sums_of(std::uint32_t place, Load&& load) const {
+    const Block& block = blocks_[place / lanes];
+    const std::uint32_t lane = place % lanes;
+    using Wide = decltype(load(block.density));
+    const auto excess = Wide(excess_of(place / lanes)), of_shift = shifts_ ? excess : Wide(0);
+    PairResult<D, decltype(lanes_of<Sum>(excess))> sums;
+    for (int axis = 0; axis < D; ++axis) {  // partners received them with the other sign
+      sums.impulse[axis] = lanes_of<Sum>(load(&block.impulse[axis][lane]) + excess);
+      sums.shift[axis] = lanes_of<Sum>(load(&block.shift[axis][lane]) + of_shift);
+    }
+    sums.density = lanes_of<Sum>(load(&block.density[lane]) - excess);
+    return sums;
+  }
+  Wrapping<Sum> excess_of(std::uint32_t block) const {
+    if constexpr (Numbers::ListRounding::excess == 0)
+      return 0;
+    else
+      return Numbers::ListRounding::excess * contributions_[block];
+  }
+
+  bool shifts_ = false;                       // whether there are any
+  std::vector<std::uint32_t> contributions_;  // that lists make to each block in one sum
   std::vector<std::uint32_t> starts_, gaps_;  // of each plane: its first index; its places less its indices
   Column<Block> blocks_;
 };

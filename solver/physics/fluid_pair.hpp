@@ -48,6 +48,18 @@ struct Rounded {
   MAPPM_INLINE static Fixed<Real> of(const Real& x) {
     return to_fixed(x);
   }
+  static constexpr std::uint64_t excess = 0;
+};
+
+/// As `Rounded`, but each contribution has an excess, that of its sum being as many times as much.
+struct RoundedWithExcess {
+  template <class Real>
+  using Sum = decltype(to_fixed_with_excess(Real()));
+  template <class Real>
+  MAPPM_INLINE static Sum<Real> of(const Real& x) {
+    return to_fixed_with_excess(x);
+  }
+  static constexpr std::uint64_t excess = rounding_excess;
 };
 
 template <int D, class Real>

@@ -31,6 +31,7 @@ class DoublePairs {
   using Place = double;      // a position as the lanes hold it
   using Sum = std::int64_t;  // of contributions
   using Rounding = Rounded;  // of each of them
+  using ListRounding = RoundedWithExcess;  // in lists that are kept
   /// Extent of some particles beyond which not all of them are told apart from a neighbour of one of them; rcut.
   static constexpr double largest_extent = std::numeric_limits<double>::infinity();
   using RealLanes = Lanes;
@@ -68,6 +69,7 @@ class SinglePairs {
   using Place = std::int32_t;
   using Sum = std::int32_t;
   using Rounding = Rounded;
+  using ListRounding = Rounded;
   static constexpr double largest_extent = 4.0;  // half of the least window
   using RealLanes = FloatLanes;
 
