@@ -64,7 +64,7 @@ template <int D>
 void ParallelEngine<D>::start_domains() {
   before_ = traffic();
   halo_ = std::make_unique<Halo<D>>(model_, domains_, communicator_);
-  residents_ = std::make_unique<Residents<D>>(model_, halo_->region(), halo_->needed_by_others());
+  residents_ = std::make_unique<Residents<D>>(model_, halo_->region(), halo_->needed());
   Vec<D, double> in_reach;  // length of a quantum
   for (int axis = 0; axis < D; ++axis) in_reach[axis] = model_.pair.length[axis] / (1.0 + skin);
   grid_.fit(halo_->region(), in_reach, cells_per_reach(model_, 1.0 + skin));

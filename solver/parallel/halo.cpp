@@ -28,7 +28,9 @@ Halo<D>::Halo(const Model<D>& model, const Domains<D>& domains, const Communicat
   for (const int partner : partners_) traffic_.neighbours += partner != communicator.rank() ? 1 : 0;
   for (const Image<D>& image : images_) {
     image_reach_.push_back(widened(model, image.region, 1.0));
-    image_ghost_reach_.push_back(widened(model, image.region, 1.0 + skin));
+    NeededRegion<D>& needed = needed_.emplace_back();
+    needed.region = widened(model, image.region, 1.0 + skin);
+    if (partners_[static_cast<std::size_t>(image.partner)] == communicator.rank()) needed.own_shift = image.shift;
     image_solid_reach_.push_back(widened(model, image.region, solid_margin(model)));
   }
 }
@@ -82,7 +84,11 @@ bool Halo<D>::end_exchange(State<D>& state, Residents<D>& residents, std::vector
   const std::vector<BufferReader> of_fluid = readers;
   const bool stay = residents.lasts() && residents.refresh(state.fluid, readers);
   if (!stay) {
-    residents.leave(state.fluid);
+    if (residents.staying()) {
+      residents.leave(state.fluid);
+      choose(state.fluid, true);
+    }
+    add_own_images(state.fluid);
     readers = of_fluid;
     for (BufferReader& reader : readers) unpack_fluid(reader, state.fluid);
   }
@@ -92,26 +98,40 @@ bool Halo<D>::end_exchange(State<D>& state, Residents<D>& residents, std::vector
   return stay;
 }
 
-/// Message to each partner, behind the plan: number of PPs, then their ids, then field by field. PPs near the border of
-/// the region, or beyond it, are moved to its frame, where those that stay are already.
+/// Outside a stay: the PPs needed elsewhere. Those near the border of the region, or beyond it, are moved to its frame,
+/// where those that stay are already.
+template <int D>
+void Halo<D>::choose(FluidParticles<D>& fluid, bool own_images_alone) {
+  for (std::size_t i = 0; i < fluid.size(); ++i) {
+    Vec<D, double> x = fluid.position(i);
+    if (interior_.contains(x)) continue;
+    x = in_frame(x);
+    for (int axis = 0; axis < D; ++axis) fluid.x(axis)[i] = x[axis];
+    for (std::size_t n = 0; n < images_.size(); ++n) {
+      if (own_images_alone && !needed_[n].own_shift) continue;
+      if (needed_[n].region.contains(x)) selected_[n].push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+}
+
+/// Message to each partner, behind the plan: number of PPs, then their ids, then field by field. Images of own PPs need
+/// none.
 template <int D>
 void Halo<D>::pack_fluid(FluidParticles<D>& fluid, const Residents<D>& residents) {
   for (auto& chosen : selected_) chosen.clear();
   if (residents.staying()) {
-    for (std::size_t n = 0; n < images_.size(); ++n) residents.select(fluid, n, selected_[n]);
+    for (std::size_t n = 0; n < images_.size(); ++n)
+      if (!needed_[n].own_shift) residents.select(fluid, n, selected_[n]);
   } else {
-    for (std::size_t i = 0; i < fluid.size(); ++i) {
-      Vec<D, double> x = fluid.position(i);
-      if (interior_.contains(x)) continue;
-      x = in_frame(x);
-      for (int axis = 0; axis < D; ++axis) fluid.x(axis)[i] = x[axis];
-      for (std::size_t n = 0; n < images_.size(); ++n)
-        if (image_ghost_reach_[n].contains(x)) selected_[n].push_back(static_cast<std::uint32_t>(i));
-    }
+    choose(fluid, false);
   }
   for (std::size_t partner = 0; partner < partners_.size(); ++partner) {
     Buffer& buffer = out_[partner];
     std::uint64_t count = 0;
+    if (partners_[partner] == communicator_.rank()) {
+      put(buffer, count);
+      continue;
+    }
     for (std::size_t n = 0; n < images_.size(); ++n)
       if (images_[n].partner == static_cast<int>(partner)) count += selected_[n].size();
     std::byte* to = extend(buffer, sizeof count * (1 + count * (1 + FluidParticles<D>::field_count)));
@@ -126,6 +146,24 @@ void Halo<D>::pack_fluid(FluidParticles<D>& fluid, const Residents<D>& residents
         const auto& values = fluid.field[static_cast<std::size_t>(f)];
         for (const std::uint32_t i : selected_[n]) write(to, values[i] + shift);
       }
+  }
+}
+
+template <int D>
+void Halo<D>::add_own_images(FluidParticles<D>& fluid) const {
+  std::size_t first = fluid.size(), size = first;
+  for (std::size_t n = 0; n < images_.size(); ++n)
+    if (needed_[n].own_shift) size += selected_[n].size();
+  fluid.resize(size);
+  for (std::size_t n = 0; n < images_.size(); ++n) {
+    if (!needed_[n].own_shift) continue;
+    const auto add = [&](auto& values, const auto& shift) {
+      for (std::size_t k = 0; k < selected_[n].size(); ++k) values[first + k] = values[selected_[n][k]] + shift;
+    };
+    add(fluid.id, std::uint64_t{0});
+    for (int f = 0; f < FluidParticles<D>::field_count; ++f)
+      add(fluid.field[static_cast<std::size_t>(f)], f < D ? (*needed_[n].own_shift)[f] : 0.0);
+    first += selected_[n].size();
   }
 }
 

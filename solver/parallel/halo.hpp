@@ -37,8 +37,8 @@ class Halo {
   const Region<D>& region() const { return region_; }
   /// The region and its margin of rcut: where FPs matter.
   const Region<D>& reach() const { return reach_; }
-  /// Where PPs lie that others need: a region for each image of theirs.
-  const std::vector<Region<D>>& needed_by_others() const { return image_ghost_reach_; }
+  /// Where PPs lie that are needed elsewhere: a region for each image of a neighbour.
+  const std::vector<NeededRegion<D>>& needed() const { return needed_; }
 
   /// On entry `state` holds what this process owned before the particles moved, at their new positions, and the PPs of
   /// a stay. On return it holds its particles and, as far out as rcut + skin, ghosts, all in its frame, and its solids;
@@ -59,7 +59,9 @@ class Halo {
 
  private:
   Vec<D, double> in_frame(Vec<D, double> x) const;
+  void choose(FluidParticles<D>& fluid, bool own_images_alone);
   void pack_fluid(FluidParticles<D>& fluid, const Residents<D>& residents);
+  void add_own_images(FluidParticles<D>& fluid) const;
   void pack_solids(std::vector<Solid<D>>& solids);
   void pack_solid(const Solid<D>& solid, std::size_t image);
   void unpack_fluid(BufferReader& reader, FluidParticles<D>& fluid);
@@ -74,8 +76,8 @@ class Halo {
   Region<D> region_, reach_, solid_reach_;
   Region<D> interior_, solid_interior_;  // particles and solids here are needed by nobody else
   std::vector<Image<D>> images_;
-  std::vector<Region<D>> image_reach_, image_ghost_reach_;  // around each image, margins of rcut and of rcut + skin
-  std::vector<Region<D>> image_solid_reach_;
+  std::vector<NeededRegion<D>> needed_;  // around each image, a margin of rcut + skin
+  std::vector<Region<D>> image_reach_, image_solid_reach_;
   std::vector<int> partners_;
   std::vector<Buffer> out_, in_;
   std::vector<std::vector<std::uint32_t>> selected_;  // PPs chosen for each image

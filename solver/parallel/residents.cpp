@@ -21,16 +21,16 @@ Region<D> widened(const Model<D>& model, Region<D> region, double margin) {
 }
 
 template <int D>
-Residents<D>::Residents(const Model<D>& model, const Region<D>& region, const std::vector<Region<D>>& others)
+Residents<D>::Residents(const Model<D>& model, const Region<D>& region, const std::vector<NeededRegion<D>>& needed)
     : model_(model),
       region_(region),
       may_own_(widened(model, region, 0.5 * skin)),
       deep_(widened(model, region, -0.5 * skin)),
       noticed_(widened(model, region, 1.0 + 0.5 * skin)),
       needless_(widened(model, region, -1.0 - 1.5 * skin)),
-      others_(others),
-      candidates_(others.size()) {
-  for (const Region<D>& other : others) may_enter_.push_back(widened(model, other, 0.5 * skin));
+      needed_(needed),
+      candidates_(needed.size()) {
+  for (const NeededRegion<D>& one : needed) may_enter_.push_back(widened(model, one.region, 0.5 * skin));
 }
 
 template <int D>
@@ -57,7 +57,7 @@ void Residents<D>::settle(const FluidParticles<D>& fluid, bool single_step) {
       if (!owned) near_outside_.push_back(place);
     }
     for (std::size_t n = 0; n < candidates_.size() && !single_step; ++n)
-      if (may_enter_[n].contains(x)) candidates_[n].push_back({place, near});
+      if (may_enter_[n].contains(x)) candidates_[n].push_back({place, near, none});
   }
   near_ = places_.size();
   places_.insert(places_.end(), ghosts.begin(), ghosts.end());
@@ -74,6 +74,19 @@ void Residents<D>::settle(const FluidParticles<D>& fluid, bool single_step) {
     const std::uint32_t* slot = slot_of(fluid.id[places_[n]]);
     while (*slot != none) slot = next(slot);
     table_[static_cast<std::size_t>(slot - table_.data())] = n;
+  }
+  for (std::size_t n = 0; n < needed_.size(); ++n) {
+    if (!needed_[n].own_shift) continue;
+    for (Candidate& candidate : candidates_[n]) {
+      const std::uint64_t id = fluid.id[candidate.place];
+      const Vec<D, double> image = fluid.position(candidate.place) + *needed_[n].own_shift;
+      const auto is_image = [&](std::uint32_t k) {
+        return fluid.id[places_[k]] == id && fluid.position(places_[k]) == image;
+      };
+      const std::uint32_t* slot = slot_of(id);
+      while (*slot != none && !is_image(*slot)) slot = next(slot);
+      candidate.image = *slot;
+    }
   }
   for (auto& sequence : sequences_) sequence.clear();
   stood_.assign(places_.size(), 0);
@@ -103,8 +116,8 @@ void Residents<D>::fall_in(std::uint64_t step, std::uint64_t plan) {
 
 template <int D>
 void Residents<D>::select(const FluidParticles<D>& fluid, std::size_t n, std::vector<std::uint32_t>& chosen) const {
-  for (const auto& [place, near] : candidates_[n])
-    if ((near == none || owned_[near] != 0) && others_[n].contains(fluid.position(place))) chosen.push_back(place);
+  for (const Candidate& candidate : candidates_[n])
+    if (is_needed(fluid, n, candidate)) chosen.push_back(candidate.place);
 }
 
 /// Where the search for an id begins; several images of one PP follow each other.
@@ -122,6 +135,8 @@ template <int D>
 bool Residents<D>::refresh(FluidParticles<D>& fluid, std::span<BufferReader> readers) {
   std::copy(owned_.begin(), owned_.end(), up_to_date_.begin());
   std::fill(up_to_date_.begin() + static_cast<std::ptrdiff_t>(near_), up_to_date_.end(), 0);
+  for (std::size_t n = 0; n < needed_.size(); ++n)
+    if (needed_[n].own_shift && !refresh_own(fluid, n)) return false;
   sequences_.resize(readers.size());
   for (std::size_t n = 0; n < readers.size(); ++n)
     if (!refresh(fluid, readers[n], sequences_[n])) return false;
@@ -132,6 +147,24 @@ bool Residents<D>::refresh(FluidParticles<D>& fluid, std::span<BufferReader> rea
     if (up_to_date_[n] == 0 && noticed_.contains(fluid.position(places_[n]))) return false;
   ++steps_;
   for (std::size_t n = 0; n < near_; ++n) owned_[n] = region_.contains(fluid.position(places_[n])) ? 1 : 0;
+  return true;
+}
+
+/// An image that was not here at the start of the stay is a stranger, as one from another process.
+template <int D>
+bool Residents<D>::refresh_own(FluidParticles<D>& fluid, std::size_t n) {
+  const Vec<D, double>& shift = *needed_[n].own_shift;
+  for (const Candidate& candidate : candidates_[n]) {
+    if (!is_needed(fluid, n, candidate)) continue;
+    if (candidate.image == none) {
+      if (noticed_.contains(fluid.position(candidate.place) + shift)) return false;
+      continue;
+    }
+    const std::uint32_t image = places_[candidate.image];
+    for (int axis = 0; axis < D; ++axis) fluid.x(axis)[image] = fluid.x(axis)[candidate.place] + shift[axis];
+    for (std::size_t f = D; f < fluid.field.size(); ++f) fluid.field[f][image] = fluid.field[f][candidate.place];
+    up_to_date_[candidate.image] = 1;
+  }
   return true;
 }
 

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,11 +36,18 @@ static_assert(skin < 0.15, "lanes of gaps lie 4 rcut from their plane (far_from)
 template <int D>
 Region<D> widened(const Model<D>& model, Region<D> region, double margin);
 
+/// Where the PPs lie that are needed elsewhere: by another process, or by this one across a periodic border, where it
+/// needs their images.
+template <int D>
+struct NeededRegion {
+  Region<D> region;
+  std::optional<Vec<D, double>> own_shift;  // to these images, quanta
+};
+
 template <int D>
 class Residents {
  public:
-  /// `others`: where the PPs lie that other processes need, one region an image of theirs.
-  Residents(const Model<D>& model, const Region<D>& region, const std::vector<Region<D>>& others);
+  Residents(const Model<D>& model, const Region<D>& region, const std::vector<NeededRegion<D>>& needed);
 
   bool staying() const { return staying_; }
   /// False where the own PPs have moved so far that the stay must end now, or where that is the plan.
@@ -60,7 +68,7 @@ class Residents {
 
   /// Starts a stay, which may be one of a single step. `fluid`: all PPs here, in the order that they will keep.
   void settle(const FluidParticles<D>& fluid, bool single_step = false);
-  /// In a stay that lasts: adds those of this process' own PPs that lie in region n of `others` now.
+  /// In a stay that lasts: adds those of this process' own PPs that lie in region n of `needed` now.
   void select(const FluidParticles<D>& fluid, std::size_t n, std::vector<std::uint32_t>& chosen) const;
   /// PPs that others own or may come to own: all those that messages can change.
   std::span<const std::uint32_t> foreign() const { return places_; }
@@ -69,8 +77,9 @@ class Residents {
   /// Largest displacement of the own PPs in the step made now, rcut.
   void moved(double farthest) { farthest_ = last_farthest_ = farthest; }
 
-  /// In a stay that lasts: brings ghosts up to date from messages (halo.hpp), whose readers then stand behind their
-  /// PPs. False where the stay ends by what they say: some ghosts may be new and others old, and `leave` is due.
+  /// In a stay that lasts: brings ghosts up to date, images of own PPs from these and others from messages (halo.hpp),
+  /// whose readers then stand behind their PPs. False where the stay ends by what they say: some ghosts may be new and
+  /// others old, and `leave` is due.
   bool refresh(FluidParticles<D>& fluid, std::span<BufferReader> readers);
   /// Ends a stay: only what this process owned in the last step remains in `fluid`.
   void leave(FluidParticles<D>& fluid);
@@ -83,10 +92,12 @@ class Residents {
   const std::uint32_t* slot_of(std::uint64_t id) const;
   const std::uint32_t* next(const std::uint32_t* slot) const;
   bool refresh(FluidParticles<D>& fluid, BufferReader& reader, std::vector<std::uint32_t>& sequence);
+  bool refresh_own(FluidParticles<D>& fluid, std::size_t n);
 
   const Model<D>& model_;
   Region<D> region_, may_own_, deep_, noticed_, needless_;
-  std::vector<Region<D>> others_, may_enter_;
+  std::vector<NeededRegion<D>> needed_;
+  std::vector<Region<D>> may_enter_;  // those, a skin / 2 wider
   bool staying_ = false;
   int steps_ = 0, short_stays_ = 0;  // of this stay; stays in a row that were shorter than worthwhile
   // Displacements, rcut: since the start of the stay at most, in the last step, and in that of the own PPs alone.
@@ -95,7 +106,12 @@ class Residents {
   bool ending_ = false;        // it has come
   struct Candidate {
     std::uint32_t place, near;  // `none` where it is owned throughout
+    std::uint32_t image;        // an index into places_, `none` where it is not here
   };
+  bool is_needed(const FluidParticles<D>& fluid, std::size_t n, const Candidate& candidate) const {
+    return (candidate.near == none || owned_[candidate.near] != 0) &&
+           needed_[n].region.contains(fluid.position(candidate.place));
+  }
   std::vector<std::vector<Candidate>> candidates_;  // of those in `may_enter_`
   // Those that others own, or may come to own: first, `near_` of them, the ones near the border of the region.
   std::vector<std::uint32_t> places_;

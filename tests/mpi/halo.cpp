@@ -200,7 +200,7 @@ void expect_brute_force_halo(const Built<D>& built, const Domains<D>& domains) {
   const Region<D> region = domains.region(world().rank());
   State<D> state = share_of(global, before, region);
   Halo<D> halo(model, domains, world());
-  Residents<D> residents(model, region, halo.needed_by_others());
+  Residents<D> residents(model, region, halo.needed());
   std::vector<Solid<D>> copies;
   Stopwatch watch;
   EXPECT_FALSE(halo.exchange(state, residents, copies, watch));
@@ -268,7 +268,7 @@ void expect_whole_margin(const std::string& scene) {
     const Domains<D> domains = make_domains<D>(built.model, world().size(), grid);
     const Region<D> region = domains.region(world().rank());
     Halo<D> halo(built.model, domains, world());
-    Residents<D> residents(built.model, region, halo.needed_by_others());
+    Residents<D> residents(built.model, region, halo.needed());
     State<D> state = share_of(global, global, region);
     std::vector<Solid<D>> copies;
     Stopwatch watch;
@@ -289,7 +289,7 @@ TEST(Halo, positions_do_not_drift_through_many_exchanges) {
   State<2> state = built.state(region);
   const std::uint64_t digest = testing::total(digest_share(state));
   Halo<2> halo(built.model, domains, world());
-  Residents<2> residents(built.model, region, halo.needed_by_others());
+  Residents<2> residents(built.model, region, halo.needed());
   std::vector<Solid<2>> copies;
   Stopwatch watch;
   for (int n = 0; n < 5; ++n) {

@@ -26,7 +26,7 @@ class ResidentsTest : public ::testing::Test {
       : built_(testing::head("[12.0, 10.8]", "0.3", "11.1111111111")),
         region_{{{quanta(0, 4.0), 0.0}}, {{quanta(0, 8.0), box_quanta}}},
         below_{{{quanta(0, 0.0), 0.0}}, {{quanta(0, 4.0), box_quanta}}},
-        residents_(built_.model, region_, {widened(built_.model, below_, 1.0 + skin)}) {}
+        residents_(built_.model, region_, {{widened(built_.model, below_, 1.0 + skin), std::nullopt}}) {}
 
   double quanta(int axis, double length) const { return std::floor(length / built_.model.pair.length[axis]); }
   double length(int axis, double quanta) const { return quanta * built_.model.pair.length[axis]; }
