@@ -31,7 +31,6 @@ struct Census {
 template <int D>
 class Parts {
   using Pass = FluidPass<D, DoublePairs<D>>;
-  using Lists = typename Pass::Lists;
 
  public:
   explicit Parts(std::uint64_t side)
@@ -53,9 +52,7 @@ class Parts {
 
   Census census() {
     Census found;
-    pass_.for_each_list(setup_.particles, setup_.grid, [&](const Lists& lists) {
-      lists.for_each_partner([&](std::uint32_t, std::uint32_t) { ++found.candidates; });
-    });
+    found.candidates = pass_.measured();
     for (const auto& lists : pass_.kept()) {
       found.blocks += lists.blocks().size();
       lists.for_each_chunk(numbers_, blocks_.data(), squares_, [&](auto centres, std::size_t base) {

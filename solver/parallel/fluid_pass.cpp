@@ -87,7 +87,7 @@ void FluidPass<D, Numbers>::sum_once(FluidParticles<D>& fluid, const CellGrid<D>
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     for_each_band(grid, [&](int first, int last, Search& search, std::size_t) {
       for_each_row(grid, first, last, [&](const Vec<D, int>& row) {
-        for_each_list(fluid, grid, row, false, search, [&](Lists& lists) {
+        for_each_list(fluid, grid, row, search, [&](Lists& lists) {
           sum_lists<Kernel, transport, false>(
               numbers_, blocks_.data(), lists, [&](std::uint32_t i) { return blocks_.centre(i); },
               [](std::uint32_t) { return UnitFactor{}; },
@@ -102,38 +102,121 @@ template <int D, class Numbers>
 void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region,
                                  double reach, std::span<const std::uint32_t> foreign, bool apart) {
   prepare(fluid, grid);
+  for (Search& search : searches_) search.measured = 0;
   foreign_.assign(blocks_.size(), 0);
   for (const std::uint32_t i : foreign) foreign_[blocks_.place(i) / lanes] = 1;
   const auto square = static_cast<typename Numbers::Real>(reach * reach);
   const std::vector<std::uint8_t> inside = places_in(fluid, grid, region);  // of each place
-  const auto reaches_inside = [&](std::uint32_t block) {
-    const auto first = inside.begin() + static_cast<std::ptrdiff_t>(block) * lanes;
-    return std::find(first, first + lanes, 1) != first + lanes;
-  };
+  std::vector<std::uint8_t> reaches_inside(blocks_.size());                 // of each block
+  for (std::size_t block = 0; block < blocks_.size(); ++block)
+    reaches_inside[block] = std::ranges::count(std::span(inside).subspan(block * lanes, lanes), 1) > 0 ? 1 : 0;
   const std::vector<std::uint8_t> wide = wide_blocks(fluid, grid);
   const int height = band_height(grid);
   kept_.resize(parts * static_cast<std::size_t>((grid.count(D - 1) + height - 1) / height));
   for_each_band(grid, [&](int first, int last, Search& search, std::size_t band) {
     for (const Part part : {inner, rest}) kept_[parts * band + part].clear();
     for_each_row(grid, first, last, [&](const Vec<D, int>& row) {
-      for_each_list(fluid, grid, row, true, search, [&](Lists& lists) {
-        lists.template measure<false>(numbers_, blocks_.data(), square);
-        lists.for_each_centre([&](std::uint32_t place, std::span<const std::uint32_t> blocks, const auto& partners) {
-          const auto is_foreign = [&](std::uint32_t block) { return foreign_[block] != 0; };
-          const bool alone = apart && !is_foreign(place / lanes) && std::ranges::none_of(blocks, is_foreign);
-          const Part part = alone ? inner : rest;
-          KeptLists<D, Numbers>& kept = kept_[parts * band + part];
-          const auto is_wide = [&](std::uint32_t block) { return !wide.empty() && wide[block] != 0; };
-          if (inside[place] != 0)
-            kept.add(
-                place, blocks, [](std::uint32_t) { return true; }, is_wide, partners);
-          else
-            kept.add(place, blocks, reaches_inside, is_wide, partners);
-        });
+      for_each_block_list(fluid, grid, row, square, search, [&](std::uint32_t place, std::span<const NearBlock> near) {
+        const auto is_foreign = [&](const NearBlock& other) { return foreign_[other.block] != 0; };
+        const bool alone = apart && foreign_[place / lanes] == 0 && std::ranges::none_of(near, is_foreign);
+        const bool all = inside[place] != 0;
+        const auto is_wide = [&](const NearBlock& other) { return !wide.empty() && wide[other.block] != 0; };
+        kept_[parts * band + (alone ? inner : rest)].add(
+            place, near,
+            [&](const NearBlock& other) { return all || reaches_inside[other.block] != 0; }, is_wide,
+            [&](const NearBlock& other) { return lanes_near(fluid, place, row[D - 1], other); });
       });
     });
     for (const Part part : {inner, rest}) blocks_.expect(kept_[parts * band + part].blocks());
   });
+}
+
+/// Calls work(place, blocks) for the PPs of this row: the blocks of later places in which a PP lies within a reach,
+/// whose square is given in rcut^2. They stand in rising order.
+template <int D, class Numbers>
+template <class Work>
+void FluidPass<D, Numbers>::for_each_block_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
+                                                const Vec<D, int>& row, typename Numbers::Real square_of_reach,
+                                                Search& search, Work&& work) {
+  const std::size_t cells = grid.row(row);
+  const std::uint32_t gap = blocks_.gap(row[D - 1]);
+  const std::uint32_t begin = grid.start(cells) + gap;
+  const std::uint32_t end = grid.start(cells + static_cast<std::size_t>(grid.count(0))) + gap;
+  if (begin == end) return;
+  search.near.fit(grid, blocks_, half_rows_, row, false);
+  for (std::uint32_t own = begin / lanes; own * lanes < end; ++own) {
+    const std::uint32_t first = std::max(begin, own * lanes), last = std::min(end, (own + 1) * lanes);
+    Region<D> box;
+    for (int axis = 0; axis < D; ++axis) {
+      const auto x = fluid.x(axis).begin();
+      const auto [low, high] = std::minmax_element(x + (first - gap), x + (last - gap));
+      box.low[axis] = *low;
+      box.high[axis] = *high;
+    }
+    search.near.find(grid, box);
+    std::vector<NearBlock>& candidates = search.candidates;
+    candidates.clear();
+    std::uint32_t next = own;  // a block on the border of two rows is found in both
+    for (std::size_t n = 0; n < search.near.count(); ++n) {
+      const auto range = search.near.range(grid, n);
+      if (range.end <= range.first) continue;
+      for (next = std::max(next, range.first / lanes); next * lanes < range.end; ++next)
+        candidates.push_back({next, search.near.gap(n)});
+    }
+    search.measured += candidates.size() * lanes * lanes;
+    if (search.found.size() < candidates.size() * lanes) search.found.resize(candidates.size() * lanes);
+    std::array<std::uint32_t, lanes> counts{};
+    NearBlock* const found = search.found.data();
+    const std::size_t stride = candidates.size();
+    const auto measure = [&]<bool is_own>(const NearBlock& other, std::bool_constant<is_own>)
+                             __attribute__((always_inline)) {
+      measure_all<is_own>(own, other.block, square_of_reach, [&](std::uint32_t lane, bool near) {
+        found[lane * stride + counts[lane]] = other;
+        counts[lane] += near ? 1 : 0;
+      });
+    };
+    measure(candidates[0], std::true_type{});
+    for (std::size_t n = 1; n < candidates.size(); ++n) measure(candidates[n], std::false_type{});
+    for (std::uint32_t place = first; place < last; ++place) {
+      const std::uint32_t lane = place % lanes;
+      work(place, std::span<const NearBlock>(found + lane * stride, counts[lane]));
+    }
+  }
+}
+
+/// Calls found(lane, near) for all PPs of a block: whether one of another block lies within the reach, or in the block
+/// itself (`is_own`) a later one.
+template <int D, class Numbers>
+template <bool is_own, class Found>
+MAPPM_INLINE void FluidPass<D, Numbers>::measure_all(std::uint32_t own, std::uint32_t other,
+                                                     typename Numbers::Real square_of_reach, Found&& found) const {
+  using RealLanes = typename Numbers::RealLanes;
+  const PairBlock<D, Numbers>&one = blocks_[own], &two = blocks_[other];
+  for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+    Vec<D, typename Numbers::Place> x;
+    for (int axis = 0; axis < D; ++axis) x[axis] = one.x[axis][lane];
+    const Vec<D, RealLanes> r = detail::separation_of_block<false>(numbers_, two, x);
+    RealLanes square = dot(r, r);
+    if constexpr (is_own)
+      square = larger(square, (RealLanes(static_cast<typename Numbers::Real>(lane + 1)) - lane_numbers<RealLanes>()) *
+                                  RealLanes(square_of_reach));
+    found(lane, any_below(square, square_of_reach));
+  }
+}
+
+/// Of a wide block the lanes that are told apart from a PP: one a bit.
+template <int D, class Numbers>
+std::uint16_t FluidPass<D, Numbers>::lanes_near(const FluidParticles<D>& fluid, std::uint32_t place, int plane,
+                                                const NearBlock& other) const {
+  unsigned near = 0;
+  for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+    const Vec<D, double> d = separation(
+        model_.pair, fluid.position(other.block * lanes + lane - other.gap) - fluid.position(place - blocks_.gap(plane)));
+    bool apart = true;
+    for (int axis = 0; axis < D; ++axis) apart = apart && std::fabs(d[axis]) <= Numbers::largest_extent;
+    near |= apart ? 1u << lane : 0u;
+  }
+  return static_cast<std::uint16_t>(near);
 }
 
 template <int D, class Numbers>
@@ -194,12 +277,12 @@ void FluidPass<D, Numbers>::add_frozen(const CellGrid<D>& grid, const std::vecto
   });
 }
 
-/// All pairs of PPs whose first one lies in this row: calls work(lists) with the partners of some of its particles.
-/// Without `ghost_pairs` a pair of two ghosts, which lie in margin cells, is left out.
+/// All pairs of PPs whose first one lies in this row: calls work(lists) with the partners of some of its particles. A
+/// pair of two ghosts, which lie in margin cells, is left out.
 template <int D, class Numbers>
 template <class Work>
 void FluidPass<D, Numbers>::for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
-                                          const Vec<D, int>& row, bool ghost_pairs, Search& search, Work&& work) {
+                                          const Vec<D, int>& row, Search& search, Work&& work) {
   bool inner_row = true;
   for (int axis = 1; axis < D; ++axis) inner_row = inner_row && grid.is_inner(axis, row[axis]);
   NearRows<D>& near = search.near;
@@ -210,37 +293,26 @@ void FluidPass<D, Numbers>::for_each_list(const FluidParticles<D>& fluid, const 
     const std::uint32_t begin = grid.start(cells + static_cast<std::size_t>(begin_cell)) + gap;
     const std::uint32_t end = grid.start(cells + static_cast<std::size_t>(end_cell)) + gap;
     if (begin == end) return;
-    near.fit(grid, blocks_, half_rows_, row, ghost && !ghost_pairs);
-    for (std::uint32_t group = begin - begin % lane_count; group < end; group += lane_count) {
-      Vec<D, Lanes> places;
-      for (int axis = 0; axis < D; ++axis) places[axis] = load_lanes(&fluid.x(axis)[group - gap]);
-      near.find(grid, places);
-      const std::uint32_t last = std::min(group + lane_count, end);
-      for (std::uint32_t i = std::max(group, begin); i < last; ++i)
-        lists.add(
-            i, blocks_.centre(i).x, near.count(), [&](std::size_t n) __attribute__((always_inline)) {
-              auto range = near.range(grid, n, i - group);
-              range.first = std::max(range.first, i + 1);  // other rows lie behind i
-              return range;
-            });
-      if (!lists.is_full() && last < end) continue;
+    near.fit(grid, blocks_, half_rows_, row, ghost);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const Vec<D, double> x = fluid.position(i - gap);
+      near.find(grid, {x, x});
+      lists.add(
+          i, blocks_.centre(i).x, near.count(), [&](std::size_t n) __attribute__((always_inline)) {
+            auto range = near.range(grid, n);
+            range.first = std::max(range.first, i + 1);  // other rows lie behind i
+            return range;
+          });
+      if (!lists.is_full() && i + 1 < end) continue;
       work(lists);
       lists.clear();
     }
   };
   const int first_inner = grid.margin(0), end_inner = grid.margin(0) + grid.inner(0);
-  if (!inner_row || ghost_pairs) return run(0, grid.count(0), true);
+  if (!inner_row) return run(0, grid.count(0), true);
   run(0, first_inner, true);
   run(first_inner, end_inner, false);
   run(end_inner, grid.count(0), true);
-}
-
-template <int D, class Numbers>
-void FluidPass<D, Numbers>::for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
-                                          const std::function<void(Lists&)>& visit) {
-  Search search;
-  for_each_row(grid, 0, grid.count(D - 1),
-               [&](const Vec<D, int>& row) { for_each_list(fluid, grid, row, true, search, visit); });
 }
 
 /// FPs of a plane of cells, ordered by rows: calls work(lists) with the PPs near some of them.
@@ -251,22 +323,16 @@ void FluidPass<D, Numbers>::for_each_frozen_list(const CellGrid<D>& grid, const 
                                                  Work&& work) const {
   NearRows<D>& near = search.near;
   Lists& lists = search.lists;
-  const auto row_of = [&](std::size_t n) {
+  Vec<D, int> fitted{};
+  for (std::size_t n = 0; n < chosen.size(); ++n) {
+    const FrozenInStep<D>& fp = frozen[chosen[n]];
     Vec<D, int> row;
-    for (int axis = 1; axis < D; ++axis) row[axis] = grid.coordinate(axis, frozen[chosen[n]].place.x[axis]);
-    return row;
-  };
-  for (std::size_t first = 0, end = 0; first < chosen.size(); first = end) {
-    const Vec<D, int> row = row_of(first);
-    Vec<D, Lanes> places{};
-    for (; end < chosen.size() && end - first < lane_count && row_of(end) == row; ++end)
-      for (int axis = 0; axis < D; ++axis) places[axis][end - first] = frozen[chosen[end]].place.x[axis];
-    near.fit(grid, blocks_, all_rows_, row, false);
-    near.find(grid, places);
-    for (std::size_t n = first; n < end; ++n)
-      lists.add(chosen[n], centre(frozen[chosen[n]]).x, near.count(),
-                [&](std::size_t other) { return near.range(grid, other, n - first); });
-    if (!lists.is_full() && end < chosen.size()) continue;
+    for (int axis = 1; axis < D; ++axis) row[axis] = grid.coordinate(axis, fp.place.x[axis]);
+    if (n == 0 || row != fitted) near.fit(grid, blocks_, all_rows_, row, false);
+    fitted = row;
+    near.find(grid, {fp.place.x, fp.place.x});
+    lists.add(chosen[n], centre(fp).x, near.count(), [&](std::size_t other) { return near.range(grid, other); });
+    if (!lists.is_full() && n + 1 < chosen.size()) continue;
     work(lists);
     lists.clear();
   }
@@ -323,7 +389,7 @@ std::optional<std::vector<PartnerTrace<D>>> FluidPass<D, Numbers>::trace(const F
   Search search;
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     for_each_row(grid, 0, grid.count(D - 1), [&](const Vec<D, int>& row) {
-      for_each_list(fluid, grid, row, false, search, [&](const Lists& lists) {
+      for_each_list(fluid, grid, row, search, [&](const Lists& lists) {
         lists.for_each_partner([&](std::uint32_t i, std::uint32_t j) {
           if (i != place && j != place) return;
           const PairSums sums = sums_of_pair<Kernel, transport, false>(blocks_.centre(i), j, UnitFactor{});

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <variant>
@@ -88,26 +87,41 @@ class FluidPass {
   std::optional<std::vector<PartnerTrace<D>>> trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
                                                     const std::vector<FrozenInStep<D>>& frozen, std::uint64_t particle);
 
-  /// After `list` and with its arguments: calls visit(lists) with the candidates that it meets, lists by lists.
-  void for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const std::function<void(Lists&)>& visit);
-
-  /// What `list` found.
+  /// Distances that `list` worked out.
+  std::uint64_t measured() const {
+    std::uint64_t sum = 0;
+    for (const Search& search : searches_) sum += search.measured;
+    return sum;
+  }
+  /// What it found.
   const std::vector<KeptLists<D, Numbers>>& kept() const { return kept_; }
 
  private:
   enum Part : std::size_t { inner, rest, parts };
   using Centre = PairCentre<D, Numbers>;
   /// What a thread searches with.
+  struct NearBlock {
+    std::uint32_t block, gap;  // place of a PP of its plane less its index
+  };
   struct Search {
     NearRows<D> near;
     Lists lists;
+    std::vector<NearBlock> candidates, found;  // near one block; those near each of its PPs
+    std::uint64_t measured = 0;
     Column<typename Numbers::Real> squares;
   };
   template <class Work>
   void for_each_row(const CellGrid<D>& grid, int first_plane, int last_plane, Work&& work) const;
   template <class Work>
-  void for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row, bool ghost_pairs,
-                     Search& search, Work&& work);
+  void for_each_block_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row,
+                           typename Numbers::Real square_of_reach, Search& search, Work&& work);
+  template <bool is_own, class Found>
+  void measure_all(std::uint32_t own, std::uint32_t other, typename Numbers::Real square_of_reach, Found&& found) const;
+  std::uint16_t lanes_near(const FluidParticles<D>& fluid, std::uint32_t place, int plane,
+                           const NearBlock& other) const;
+  template <class Work>
+  void for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row, Search& search,
+                     Work&& work);
   template <class Work>
   void for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
                             std::span<const std::uint32_t> chosen, Search& search, Work&& work) const;

@@ -25,29 +25,23 @@ class KeptLists {
     named_.clear();
   }
 
-  /// Adds those blocks of a centre that are `chosen`. They stand in rising order as far as two can be the same: a block
-  /// on the border of two rows is found in both. Where `named`, only these lanes of them count, one a bit.
-  template <class Chosen, class NamedBlocks, class LanesOf>
-  MAPPM_INLINE void add(std::uint32_t place, std::span<const std::uint32_t> blocks, const Chosen& chosen,
-                        const NamedBlocks& named, const LanesOf& partners) {
+  /// Adds those of the `near` blocks of a centre that are `chosen`; none occurs twice. Where `named`, only some lanes of
+  /// them count, one a bit: partners(block).
+  template <class Near, class Chosen, class NamedBlocks, class LanesOf>
+  MAPPM_INLINE void add(std::uint32_t place, std::span<const Near> near, const Chosen& chosen, const NamedBlocks& named,
+                        const LanesOf& partners) {
     const std::size_t first = blocks_.size();
-    reserve_tightly(blocks_, first + blocks.size());
-    blocks_.resize(first + blocks.size());
-    std::uint32_t* const added = blocks_.data() + first;
-    std::size_t count = 0;
-    for (std::size_t n = 0; n < blocks.size(); ++n) {
-      if (!chosen(blocks[n])) continue;
-      const bool again = count > 0 && added[count - 1] == blocks[n];
-      added[count] = blocks[n];
-      count += again ? 0 : 1;
-      if (Numbers::largest_extent == std::numeric_limits<double>::infinity() || !named(blocks[n])) continue;
-      if (again)
-        named_.back().partners |= partners(n);
-      else
-        named_.push_back({static_cast<std::uint32_t>(first + count - 1), partners(n)});
+    reserve_tightly(blocks_, first + near.size());
+    blocks_.resize(first + near.size());
+    std::size_t end = first;
+    for (const Near& one : near) {
+      if (!chosen(one)) continue;
+      if (Numbers::largest_extent != std::numeric_limits<double>::infinity() && named(one))
+        named_.push_back({static_cast<std::uint32_t>(end), partners(one)});
+      blocks_[end++] = one.block;
     }
-    blocks_.resize(first + count);
-    if (count > 0) centres_.push_back({place, static_cast<std::uint32_t>(first + count)});
+    blocks_.resize(end);
+    if (end > first) centres_.push_back({place, static_cast<std::uint32_t>(end)});
   }
 
   /// All pairs, with the excess of Numbers::ListRounding on what blocks receive; `squares` is scratch of the caller's thread.

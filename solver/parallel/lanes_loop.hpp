@@ -155,23 +155,21 @@ class PartnerLists {
           visit(centres_[owner_[n]].particle, block_[n] * lanes + lane);
   }
 
-  /// Works out the distances of all blocks, and drops those that have no partner within a reach, whose square is given
-  /// in rcut^2.
+  /// Works out the distances of all blocks, and drops those that have no partner within rcut.
   template <bool lanes_first>
-  MAPPM_INLINE void measure(const Numbers& numbers, const PairBlock<D, Numbers>* blocks, Real square_of_reach) {
+  MAPPM_INLINE void measure(const Numbers& numbers, const PairBlock<D, Numbers>* blocks) {
     make_room(size_ + detail::roots_ahead);
     const Columns columns = this->columns();
     const Centre* const centres = centres_.data();
     for (std::size_t n = 0; n < size_; ++n) {
       const Vec<D, RealLanes> r =
           detail::separation_of_block<lanes_first>(numbers, blocks[columns.block[n]], centres[columns.owner[n]].x);
-      // At least the square of the reach in lanes that are no partners.
+      // At least 1 in lanes that are no partners.
       const RealLanes beside = larger(RealLanes(columns.first[n]) - lane_numbers<RealLanes>(),
-                                      lane_numbers<RealLanes>() - RealLanes(columns.last[n])) *
-                               RealLanes(square_of_reach);
+                                      lane_numbers<RealLanes>() - RealLanes(columns.last[n]));
       const RealLanes square = larger(dot(r, r), beside);
       square.copy_to(columns.distance + n * lanes, std::experimental::vector_aligned);
-      columns.used[n] = any_below(square, square_of_reach) ? 1 : 0;
+      columns.used[n] = any_below(square, Real(1)) ? 1 : 0;
     }
     // By itself: in the loop above every load would wait for the place of the store before it.
     std::size_t kept = 0, n = 0;
@@ -198,22 +196,6 @@ class PartnerLists {
         [&](std::size_t n)
             __attribute__((always_inline)) { return columns.distance + std::size_t{columns.from[n]} * lanes; },
         begin, visit, end);
-  }
-
-  /// After `measure`: calls visit(particle, blocks, lanes) for each centre. Bit k of lanes(n) says whether lane k of
-  /// blocks[n] is a partner.
-  template <class Visit>
-  void for_each_centre(Visit&& visit) const {
-    std::size_t begin = 0;
-    for (const Centre& centre : centres_) {
-      visit(centre.particle, std::span(block_).subspan(begin, centre.end - begin), [&](std::size_t n) {
-        const std::uint32_t from = from_[begin + n];
-        const auto first = static_cast<int>(std::max(first_[from], Real(0)));
-        const auto last = static_cast<int>(std::min(last_[from], static_cast<Real>(lanes - 1)));
-        return static_cast<std::uint16_t>((2u << last) - (1u << first));
-      });
-      begin = centre.end;
-    }
   }
 
  private:
@@ -313,7 +295,7 @@ template <class Kernel, bool transport, bool lanes_first, int D, class Numbers, 
           class Receive>
 void sum_lists(const Numbers& numbers, PairBlock<D, Numbers>* const blocks, PartnerLists<D, Numbers>& lists,
                CentreOf&& centre_of, BetaOf&& beta_of, Receive&& receive) {
-  lists.template measure<lanes_first>(numbers, blocks, 1);
+  lists.template measure<lanes_first>(numbers, blocks);
   sum_blocks<Kernel, transport, lanes_first, typename Numbers::Rounding, D>(
       numbers, blocks, [&](auto&&... calls) __attribute__((always_inline)) { lists.for_each_block(calls...); },
       centre_of, beta_of, receive);

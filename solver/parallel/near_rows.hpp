@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <vector>
@@ -34,7 +35,7 @@ std::vector<Vec<D, int>> row_offsets(const CellGrid<D>& grid, bool half) {
   return offsets;
 }
 
-/// The rows near one row, and in them the ranges of particles near some places in the row, a lane each.
+/// The rows near one row, and in them the ranges of particles near a box in the row.
 template <int D>
 class NearRows {
  public:
@@ -47,64 +48,73 @@ class NearRows {
     lowest_ = inner ? grid.margin(0) : 0;
     highest_ = inner ? grid.margin(0) + grid.inner(0) - 1 : grid.count(0) - 1;
     rows_.clear();
+    for (auto& borders : borders_) borders.clear();
     for (const Vec<D, int>& offset : offsets) {
       const Vec<D, int> other = row + offset;
       bool chosen = true;
       for (int axis = 1; axis < D; ++axis)
         chosen =
             chosen && (inner ? grid.is_inner(axis, other[axis]) : other[axis] >= 0 && other[axis] < grid.count(axis));
-      if (chosen) rows_.push_back({grid.row(other), blocks.gap(other[D - 1]), offset});
+      if (!chosen) continue;
+      rows_.push_back({grid.row(other), blocks.gap(other[D - 1])});
+      for (int axis = 1; axis < D; ++axis) borders_[axis].push_back(offset[axis] * grid.width(axis));
     }
-    low_.resize(rows_.size() * lane_count);
-    high_.resize(rows_.size() * lane_count);
+    const std::size_t padded = (rows_.size() + lane_count - 1) / lane_count * lane_count;
+    for (auto& borders : borders_) borders.resize(padded);
+    low_.resize(padded);
+    high_.resize(padded);
   }
 
   std::size_t count() const { return rows_.size(); }
 
-  /// For places in the row.
-  MAPPM_INLINE void find(const CellGrid<D>& grid, const Vec<D, Lanes>& x) {
-    const Lanes place = grid.place(0, x[0]);
+  /// For places in this box, its borders among them.
+  MAPPM_INLINE void find(const CellGrid<D>& grid, const Region<D>& box) {
+    const double first = grid.place(0, box.low[0]), last = grid.place(0, box.high[0]);
     const double cells_per_reach = 1.0 / grid.width(0);
-    Vec<D, Lanes> inside;  // of the row, from its lower borders
-    for (int axis = 1; axis < D; ++axis)
-      inside[axis] = (grid.place(axis, x[axis]) - static_cast<double>(row_[axis])) * grid.width(axis);
-    for (std::size_t n = 0; n < rows_.size(); ++n) {
+    Region<D> inside;  // of the row, from its lower borders
+    for (int axis = 1; axis < D; ++axis) {
+      inside.low[axis] = (grid.place(axis, box.low[axis]) - row_[axis]) * grid.width(axis);
+      inside.high[axis] = (grid.place(axis, box.high[axis]) - row_[axis]) * grid.width(axis);
+    }
+    for (std::size_t n = 0; n < rows_.size(); n += lane_count) {
       Lanes left = 1.0 + rounding;  // square of half the chord
       for (int axis = 1; axis < D; ++axis) {
-        const double border = rows_[n].offset[axis] * grid.width(axis);
+        const Lanes border = load_lanes(&borders_[axis][n]);
         const Lanes beside =
-            larger(larger(border - inside[axis], inside[axis] - (border + grid.width(axis))), Lanes(0.0));
+            larger(larger(border - inside.high[axis], inside.low[axis] - (border + grid.width(axis))), Lanes(0.0));
         left -= beside * beside;
       }
       const Lanes chord = square_root(larger(left, Lanes(0.0))) * cells_per_reach + rounding;
-      const Lanes half = smaller(chord, larger(left * 1e300, Lanes(-1.0)));  // without a chord -1: an empty range
-      whole_numbers(larger(place - half, Lanes(lowest_)), &low_[n * lane_count]);
-      whole_numbers(smaller(place + half, Lanes(highest_)), &high_[n * lane_count]);
+      const Lanes half = smaller(chord, larger(left * 1e300, Lanes(first - last - 1.0)));  // empty without a chord
+      whole_numbers(smaller(larger(first - half, Lanes(lowest_)), Lanes(highest_)), &low_[n]);
+      whole_numbers(larger(smaller(last + half, Lanes(highest_)), Lanes(-1.0)), &high_[n]);
     }
   }
 
-  /// Places [first, end) of a row that hold all those within the reach of the place of a lane, and others. There may
-  /// be none, with end <= first.
+  /// Places [first, end) of a row that hold all those within the reach of the box, and others. There may be none, with
+  /// end <= first.
   struct Range {
     std::uint32_t first, end;
   };
-  MAPPM_INLINE Range range(const CellGrid<D>& grid, std::size_t row, std::size_t lane) const {
-    const std::size_t cells = rows_[row].cells, n = row * lane_count + lane;
-    return {grid.start(cells + static_cast<std::size_t>(low_[n])) + rows_[row].gap,
-            grid.start(cells + static_cast<std::size_t>(high_[n]) + 1) + rows_[row].gap};
+  MAPPM_INLINE Range range(const CellGrid<D>& grid, std::size_t n) const {
+    const auto& [cells, gap] = rows_[n];
+    return {grid.start(cells + static_cast<std::size_t>(low_[n])) + gap,
+            grid.start(cells + static_cast<std::size_t>(high_[n] + 1)) + gap};
   }
+  /// Place of a particle of a row less its index.
+  std::uint32_t gap(std::size_t n) const { return rows_[n].gap; }
 
  private:
   static constexpr double rounding = 1e-6;  // far more than that of a place, in cells and in reaches
   struct Row {
     std::size_t cells;  // its first one
     std::uint32_t gap;
-    Vec<D, int> offset;
   };
   Vec<D, int> row_;
   double lowest_ = 0.0, highest_ = 0.0;
   std::vector<Row> rows_;
-  std::vector<std::int32_t> low_, high_;  // cells along x, `lane_count` a row
+  std::array<std::vector<double>, D> borders_;  // the lower ones of each row, from those of the own one
+  std::vector<std::int32_t> low_, high_;        // cells along x
 };
 
 }  // namespace mappm

@@ -106,6 +106,7 @@ class PairBlocks {
     store_lanes(zero, &block.density[lane]);
   }
 
+  const Block& operator[](std::uint32_t block) const { return blocks_[block]; }
   Block* data() { return blocks_.data(); }
   std::size_t size() const { return blocks_.size(); }
   /// The block of a place alone, with sums of zero.
