@@ -32,6 +32,7 @@ static_assert(sizeof(Lanes) == sizeof(IntLanes), "a lane of integers must be as 
 /// Of single precision, twice as many.
 using FloatLanes = std::experimental::native_simd<float>;
 using Int32Lanes = std::experimental::rebind_simd_t<std::int32_t, FloatLanes>;
+using UInt32Lanes = std::experimental::rebind_simd_t<std::uint32_t, FloatLanes>;
 static_assert(sizeof(FloatLanes) == sizeof(Lanes) && sizeof(Int32Lanes) == sizeof(Lanes));
 
 namespace detail {
@@ -191,15 +192,15 @@ template <class T, class Abi>
 MAPPM_INLINE T sum_of_lanes(const Simd<T, Abi>& lanes) {
   return std::experimental::reduce(lanes);
 }
-/// Modulo 2^32. The library takes three times as long.
-MAPPM_INLINE std::int32_t sum_of_lanes(const Int32Lanes& lanes) {
+/// The library takes three times as long.
+MAPPM_INLINE std::uint32_t sum_of_lanes(const UInt32Lanes& lanes) {
 #if defined(__AVX512F__)
-  return _mm512_reduce_add_epi32(detail::same_bits<__m512i>(lanes));
+  return static_cast<std::uint32_t>(_mm512_reduce_add_epi32(detail::same_bits<__m512i>(lanes)));
 #elif defined(__AVX2__)
   const auto all = detail::same_bits<__m256i>(lanes);
   __m128i sum = _mm_add_epi32(_mm256_castsi256_si128(all), _mm256_extracti128_si256(all, 1));
   sum = _mm_add_epi32(sum, _mm_shuffle_epi32(sum, 0b01'00'11'10));
-  return _mm_cvtsi128_si32(_mm_add_epi32(sum, _mm_shuffle_epi32(sum, 0b10'11'00'01)));
+  return static_cast<std::uint32_t>(_mm_cvtsi128_si32(_mm_add_epi32(sum, _mm_shuffle_epi32(sum, 0b10'11'00'01))));
 #else
   return std::experimental::reduce(lanes);
 #endif

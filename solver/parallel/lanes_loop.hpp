@@ -13,20 +13,24 @@ namespace mappm {
 
 namespace detail {
 
-template <class Sum, class SumLanes>
-MAPPM_INLINE void add_to(Sum* sums, const SumLanes& given) {
+/// Sums wrap, whatever stands in lanes that are nobody's.
+template <class Sum>
+using SumLanes = decltype(load_lanes(static_cast<const Wrapping<Sum>*>(nullptr)));
+
+template <class Sum>
+MAPPM_INLINE void add_to(Sum* sums, const SumLanes<Sum>& given) {
   auto* const wrapping = reinterpret_cast<Wrapping<Sum>*>(sums);
-  store_lanes(load_lanes(wrapping) + lanes_of<Wrapping<Sum>>(given), wrapping);
+  store_lanes(load_lanes(wrapping) + given, wrapping);
 }
 
-template <int D, class SumLanes>
-MAPPM_INLINE PairResult<D, Scalar<SumLanes>> total(const PairResult<D, SumLanes>& sums) {
-  PairResult<D, Scalar<SumLanes>> result;
+template <class Sum, int D>
+MAPPM_INLINE PairResult<D, Sum> total(const PairResult<D, SumLanes<Sum>>& sums) {
+  PairResult<D, Sum> result;
   for (int axis = 0; axis < D; ++axis) {
-    result.impulse[axis] = sum_of_lanes(sums.impulse[axis]);
-    result.shift[axis] = sum_of_lanes(sums.shift[axis]);
+    result.impulse[axis] = static_cast<Sum>(sum_of_lanes(sums.impulse[axis]));
+    result.shift[axis] = static_cast<Sum>(sum_of_lanes(sums.shift[axis]));
   }
-  result.density = sum_of_lanes(sums.density);
+  result.density = static_cast<Sum>(sum_of_lanes(sums.density));
   return result;
 }
 
@@ -58,18 +62,21 @@ MAPPM_INLINE void pair_block(const Numbers& numbers, PairBlock<D, Numbers>& bloc
   pair.v2 = RealLanes(centre.volume.v2) + load_lanes(block.v2);
   pair.pv2 = RealLanes(centre.volume.pv2) + load_lanes(block.pv2);
   const auto given = fluid_pair<Kernel, transport, Rounding>(numbers.law(), pair, r, q, beta(r));
+  const auto wrapped = [](const auto& lanes) {
+    return lanes_of<Wrapping<typename Numbers::Sum>>(lanes);
+  };
   for (int axis = 0; axis < D; ++axis) {
-    const auto impulse = lanes_first ? given.impulse[axis] : -given.impulse[axis];
+    const auto impulse = lanes_first ? wrapped(given.impulse[axis]) : -wrapped(given.impulse[axis]);
     add_to(block.impulse[axis], impulse);
     sums.impulse[axis] -= impulse;
     if constexpr (transport) {
-      const auto shift = lanes_first ? given.shift[axis] : -given.shift[axis];
+      const auto shift = lanes_first ? wrapped(given.shift[axis]) : -wrapped(given.shift[axis]);
       add_to(block.shift[axis], shift);
       sums.shift[axis] -= shift;
     }
   }
-  add_to(block.density, given.density);
-  sums.density += given.density;
+  add_to(block.density, wrapped(given.density));
+  sums.density += wrapped(given.density);
 }
 
 inline constexpr std::size_t roots_ahead = 4;
@@ -272,22 +279,22 @@ template <class Kernel, bool transport, bool lanes_first, class Rounding, int D,
           class CentreOf, class BetaOf, class Receive>
 MAPPM_INLINE void sum_blocks(const Numbers& numbers, PairBlock<D, Numbers>* const blocks, Walk&& walk,
                              CentreOf&& centre_of, BetaOf&& beta_of, Receive&& receive) {
-  using SumLanes = typename Rounding::template Sum<typename Numbers::RealLanes>;
+  using Sum = typename Numbers::Sum;
   static_assert(Rounding::excess == 0 || !lanes_first, "the signs below");
-  PairResult<D, SumLanes> sums;
+  PairResult<D, detail::SumLanes<Sum>> sums;
   PairCentre<D, Numbers> centre;
   std::decay_t<decltype(beta_of(0))> beta = beta_of(0);
   walk(
       [&](std::uint32_t n, std::size_t count) __attribute__((always_inline)) {
         centre = centre_of(n);
         beta = beta_of(n);
-        sums.density = static_cast<Scalar<SumLanes>>(-Rounding::excess * count);
+        sums.density = static_cast<Wrapping<Sum>>(-Rounding::excess * count);
         for (int axis = 0; axis < D; ++axis) sums.impulse[axis] = sums.shift[axis] = sums.density;
       },
       [&](std::uint32_t block, const typename Numbers::RealLanes& q) __attribute__((always_inline)) {
         detail::pair_block<Kernel, transport, lanes_first, Rounding>(numbers, blocks[block], centre, q, beta, sums);
       },
-      [&](std::uint32_t n) __attribute__((always_inline)) { receive(n, detail::total(sums)); });
+      [&](std::uint32_t n) __attribute__((always_inline)) { receive(n, detail::total<Sum>(sums)); });
 }
 
 /// `sum_blocks` over lists of this step. Blocks that lie beyond the cutoff are dropped from them.

@@ -139,11 +139,10 @@ class PairBlocks {
     centre.volume = {block.v2[lane], block.pv2[lane]};
     return centre;
   }
-  template <class Given>
-  MAPPM_INLINE void add(std::uint32_t place, const PairResult<D, Given>& given) {
+  MAPPM_INLINE void add(std::uint32_t place, const PairResult<D, Sum>& given) {
     Block& block = blocks_[place / lanes];
     const std::uint32_t lane = place % lanes;
-    const auto add_to = [](Sum& sum, Given more) {
+    const auto add_to = [](Sum& sum, Sum more) {
       sum = static_cast<Sum>(static_cast<Wrapping<Sum>>(sum) + static_cast<Wrapping<Sum>>(more));
     };
     for (int axis = 0; axis < D; ++axis) {
