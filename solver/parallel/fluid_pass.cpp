@@ -120,7 +120,9 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
         const auto is_foreign = [&](const NearBlock& other) { return foreign_[other.block] != 0; };
         const bool alone = apart && foreign_[place / lanes] == 0 && std::ranges::none_of(near, is_foreign);
         const bool all = inside[place] != 0;
-        const auto is_wide = [&](const NearBlock& other) { return !wide.empty() && wide[other.block] != 0; };
+        const auto is_wide = [&](const NearBlock& other) {
+          return !wide.empty() && (wide[other.block] != 0 || wide[place / lanes] != 0);
+        };
         kept_[parts * band + (alone ? inner : rest)].add(
             place, near,
             [&](const NearBlock& other) { return all || reaches_inside[other.block] != 0; }, is_wide,
@@ -204,7 +206,7 @@ MAPPM_INLINE void FluidPass<D, Numbers>::measure_all(std::uint32_t own, std::uin
   }
 }
 
-/// Of a wide block the lanes that are told apart from a PP: one a bit.
+/// The lanes of a block that are near a PP and not only seem so: one a bit.
 template <int D, class Numbers>
 std::uint16_t FluidPass<D, Numbers>::lanes_near(const FluidParticles<D>& fluid, std::uint32_t place, int plane,
                                                 const NearBlock& other) const {

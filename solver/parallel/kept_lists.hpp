@@ -36,8 +36,11 @@ class KeptLists {
     std::size_t end = first;
     for (const Near& one : near) {
       if (!chosen(one)) continue;
-      if (Numbers::largest_extent != std::numeric_limits<double>::infinity() && named(one))
-        named_.push_back({static_cast<std::uint32_t>(end), partners(one)});
+      if (Numbers::largest_extent != std::numeric_limits<double>::infinity() && named(one)) {
+        const std::uint16_t lanes_of_one = partners(one);
+        if (lanes_of_one == 0) continue;
+        named_.push_back({static_cast<std::uint32_t>(end), lanes_of_one});
+      }
       blocks_[end++] = one.block;
     }
     blocks_.resize(end);

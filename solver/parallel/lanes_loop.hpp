@@ -281,7 +281,7 @@ MAPPM_INLINE void sum_blocks(const Numbers& numbers, PairBlock<D, Numbers>* cons
                              CentreOf&& centre_of, BetaOf&& beta_of, Receive&& receive) {
   using Sum = typename Numbers::Sum;
   static_assert(Rounding::excess == 0 || !lanes_first, "the signs below");
-  PairResult<D, detail::SumLanes<Sum>> sums;
+  PairResult<D, detail::SumLanes<Sum>> sums{};
   PairCentre<D, Numbers> centre;
   std::decay_t<decltype(beta_of(0))> beta = beta_of(0);
   walk(
@@ -289,7 +289,10 @@ MAPPM_INLINE void sum_blocks(const Numbers& numbers, PairBlock<D, Numbers>* cons
         centre = centre_of(n);
         beta = beta_of(n);
         sums.density = static_cast<Wrapping<Sum>>(-Rounding::excess * count);
-        for (int axis = 0; axis < D; ++axis) sums.impulse[axis] = sums.shift[axis] = sums.density;
+        for (int axis = 0; axis < D; ++axis) {
+          sums.impulse[axis] = sums.density;
+          if constexpr (transport) sums.shift[axis] = sums.density;
+        }
       },
       [&](std::uint32_t block, const typename Numbers::RealLanes& q) __attribute__((always_inline)) {
         detail::pair_block<Kernel, transport, lanes_first, Rounding>(numbers, blocks[block], centre, q, beta, sums);

@@ -32,7 +32,7 @@ class DoublePairs {
   using Sum = std::int64_t;  // of contributions
   using Rounding = Rounded;  // of each of them
   using ListRounding = RoundedWithExcess;  // in lists that are kept
-  /// Extent of some particles beyond which not all of them are told apart from a neighbour of one of them; rcut.
+  /// Extent of a block beyond which not all of its particles are told apart from those of a block nearby; rcut.
   static constexpr double largest_extent = std::numeric_limits<double>::infinity();
   using RealLanes = Lanes;
 
@@ -70,7 +70,8 @@ class SinglePairs {
   using Sum = std::int32_t;
   using Rounding = Rounded;
   using ListRounding = Rounded;
-  static constexpr double largest_extent = 4.0;  // half of the least window
+  // Within a window of 8 lie two blocks side by side, between them the reach of lists and a cell, and the reach on.
+  static constexpr double largest_extent = 2.5;
   using RealLanes = FloatLanes;
 
   SinglePairs(const PairLaw<D>& law, double rest_density) {
