@@ -34,9 +34,7 @@ inline std::uint64_t to_fixed_with_excess(double x) { return std::bit_cast<std::
 
 /// Rounds x (|x| < 2^51) to the nearest integer, ties to even, by the bits of x + 1.5 2^52. Lanes have the same
 /// function with the same result (base/lanes.hpp). Outside the range the result is at least 2^51 in magnitude.
-inline std::int64_t to_fixed(double x) {
-  return static_cast<std::int64_t>(to_fixed_with_excess(x) - rounding_excess);
-}
+inline std::int64_t to_fixed(double x) { return static_cast<std::int64_t>(to_fixed_with_excess(x) - rounding_excess); }
 
 /// Rounds x (|x| < 2^31) to the nearest integer, ties to even. Outside the range, and for NaN, the result is -2^31.
 inline std::int32_t to_fixed(float x) {

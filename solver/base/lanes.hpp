@@ -129,10 +129,7 @@ MAPPM_INLINE void store_lanes(const Simd<T, Abi>& lanes, T* to) {
   lanes.copy_to(to, std::experimental::element_aligned);
 }
 template <class T>
-  requires std::is_arithmetic_v<T>
-MAPPM_INLINE void store_lanes(T lane, T* to) {
-  *to = lane;
-}
+requires std::is_arithmetic_v<T> MAPPM_INLINE void store_lanes(T lane, T* to) { *to = lane; }
 /// Numbers of one type, as many as there are lanes of double precision.
 template <class T>
 MAPPM_INLINE auto load_as_many(const T* from) {
@@ -141,10 +138,7 @@ MAPPM_INLINE auto load_as_many(const T* from) {
 
 /// Each number in another type: rounded to nearest, cut to its whole part, or to its low bits.
 template <class T, class U>
-  requires std::is_arithmetic_v<U>
-MAPPM_INLINE T lanes_of(U lane) {
-  return static_cast<T>(lane);
-}
+requires std::is_arithmetic_v<U> MAPPM_INLINE T lanes_of(U lane) { return static_cast<T>(lane); }
 template <class T, class U, class Abi>
 MAPPM_INLINE auto lanes_of(const Simd<U, Abi>& lanes) {
   return std::experimental::static_simd_cast<std::experimental::rebind_simd_t<T, Simd<U, Abi>>>(lanes);

@@ -124,8 +124,7 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
           return !wide.empty() && (wide[other.block] != 0 || wide[place / lanes] != 0);
         };
         kept_[parts * band + (alone ? inner : rest)].add(
-            place, near,
-            [&](const NearBlock& other) { return all || reaches_inside[other.block] != 0; }, is_wide,
+            place, near, [&](const NearBlock& other) { return all || reaches_inside[other.block] != 0; }, is_wide,
             [&](const NearBlock& other) { return lanes_near(fluid, place, row[D - 1], other); });
       });
     });
@@ -171,7 +170,7 @@ void FluidPass<D, Numbers>::for_each_block_list(const FluidParticles<D>& fluid, 
     NearBlock* const found = search.found.data();
     const std::size_t stride = candidates.size();
     const auto measure = [&]<bool is_own>(const NearBlock& other, std::bool_constant<is_own>)
-                             __attribute__((always_inline)) {
+        __attribute__((always_inline)) {
       measure_all<is_own>(own, other.block, square_of_reach, [&](std::uint32_t lane, bool near) {
         found[lane * stride + counts[lane]] = other;
         counts[lane] += near ? 1 : 0;
@@ -212,8 +211,8 @@ std::uint16_t FluidPass<D, Numbers>::lanes_near(const FluidParticles<D>& fluid, 
                                                 const NearBlock& other) const {
   unsigned near = 0;
   for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-    const Vec<D, double> d = separation(
-        model_.pair, fluid.position(other.block * lanes + lane - other.gap) - fluid.position(place - blocks_.gap(plane)));
+    const Vec<D, double> d = separation(model_.pair, fluid.position(other.block * lanes + lane - other.gap) -
+                                                         fluid.position(place - blocks_.gap(plane)));
     bool apart = true;
     for (int axis = 0; axis < D; ++axis) apart = apart && std::fabs(d[axis]) <= Numbers::largest_extent;
     near |= apart ? 1u << lane : 0u;

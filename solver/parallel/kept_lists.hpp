@@ -25,8 +25,8 @@ class KeptLists {
     named_.clear();
   }
 
-  /// Adds those of the `near` blocks of a centre that are `chosen`; none occurs twice. Where `named`, only some lanes of
-  /// them count, one a bit: partners(block).
+  /// Adds those of the `near` blocks of a centre that are `chosen`; none occurs twice. Where `named`, only some lanes
+  /// of them count, one a bit: partners(block).
   template <class Near, class Chosen, class NamedBlocks, class LanesOf>
   MAPPM_INLINE void add(std::uint32_t place, std::span<const Near> near, const Chosen& chosen, const NamedBlocks& named,
                         const LanesOf& partners) {
@@ -47,7 +47,8 @@ class KeptLists {
     if (end > first) centres_.push_back({place, static_cast<std::uint32_t>(end)});
   }
 
-  /// All pairs, with the excess of Numbers::ListRounding on what blocks receive; `squares` is scratch of the caller's thread.
+  /// All pairs, with the excess of Numbers::ListRounding on what blocks receive; `squares` is scratch of the caller's
+  /// thread.
   template <class Kernel, bool transport>
   void sum(const Numbers& numbers, PairBlocks<D, Numbers>& blocks, Column<Real>& squares) const {
     for_each_chunk(
@@ -58,9 +59,9 @@ class KeptLists {
               numbers, blocks.data(),
               [&](auto&&... calls) __attribute__((always_inline)) {
                 detail::for_each_block<RealLanes>(
-                    centres, base, blocks_.data(),
-                    [distances, base](std::size_t n)
-                        __attribute__((always_inline)) { return distances + (n - base) * lanes; },
+                    centres, base, blocks_.data(), [ distances, base ](std::size_t n) __attribute__((always_inline)) {
+                      return distances + (n - base) * lanes;
+                    },
                     calls...);
               },
               [&](std::uint32_t place) { return blocks.centre(place); }, [](std::uint32_t) { return UnitFactor{}; },

@@ -62,9 +62,7 @@ MAPPM_INLINE void pair_block(const Numbers& numbers, PairBlock<D, Numbers>& bloc
   pair.v2 = RealLanes(centre.volume.v2) + load_lanes(block.v2);
   pair.pv2 = RealLanes(centre.volume.pv2) + load_lanes(block.pv2);
   const auto given = fluid_pair<Kernel, transport, Rounding>(numbers.law(), pair, r, q, beta(r));
-  const auto wrapped = [](const auto& lanes) {
-    return lanes_of<Wrapping<typename Numbers::Sum>>(lanes);
-  };
+  const auto wrapped = [](const auto& lanes) { return lanes_of<Wrapping<typename Numbers::Sum>>(lanes); };
   for (int axis = 0; axis < D; ++axis) {
     const auto impulse = lanes_first ? wrapped(given.impulse[axis]) : -wrapped(given.impulse[axis]);
     add_to(block.impulse[axis], impulse);
@@ -85,8 +83,8 @@ template <class Numbers>
 inline constexpr std::size_t blocks_at_once = 4096 / sizeof(typename Numbers::RealLanes);
 
 /// Calls visit(block, distances) for the blocks of each centre, between begin(particle, their number) and
-/// end(particle). Of block n, from the given one to centres.back().end, squares(n) are the squared distances. They become distances, and so do
-/// `roots_ahead` squares behind the last.
+/// end(particle). Of block n, from the given one to centres.back().end, squares(n) are the squared distances. They
+/// become distances, and so do `roots_ahead` squares behind the last.
 template <class RealLanes, class Centres, class Squares, class Begin, class Visit, class End>
 MAPPM_INLINE void for_each_block(const Centres& centres, std::size_t n, const std::uint32_t* blocks, Squares&& squares,
                                  Begin&& begin, Visit&& visit, End&& end) {

@@ -27,10 +27,10 @@ struct PairPoint {
 template <int D>
 class DoublePairs {
  public:
-  using Real = double;       // of the arithmetic
-  using Place = double;      // a position as the lanes hold it
-  using Sum = std::int64_t;  // of contributions
-  using Rounding = Rounded;  // of each of them
+  using Real = double;                     // of the arithmetic
+  using Place = double;                    // a position as the lanes hold it
+  using Sum = std::int64_t;                // of contributions
+  using Rounding = Rounded;                // of each of them
   using ListRounding = RoundedWithExcess;  // in lists that are kept
   /// Extent of a block beyond which not all of its particles are told apart from those of a block nearby; rcut.
   static constexpr double largest_extent = std::numeric_limits<double>::infinity();

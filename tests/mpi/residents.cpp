@@ -145,6 +145,42 @@ TEST_F(ResidentsTest, of_a_step_the_largest_displacement_counts_once) {
   EXPECT_TRUE(receive({{4, 3.5 + 0.4 * skin}}));
 }
 
+/// Of three PPs above the border along y the first two have images beyond the other one.
+TEST_F(ResidentsTest, images_of_own_PPs_move_with_them_until_one_was_not_here) {
+  Region<2> lower = region_;
+  for (double* y : {&lower.low[1], &lower.high[1]}) *y -= box_quanta;
+  Residents<2> residents(built_.model, region_,
+                         {{widened(built_.model, lower, 1.0 + skin), Vec<2, double>{{0.0, box_quanta}}}});
+  const double height = 10.8;
+  settle({{1, 6.0, 0.5}, {2, 6.0, 0.01}, {3, 6.0, 1.0 + 1.2 * skin}, {1, 6.0, 0.5}, {2, 6.0, 0.01}});
+  for (const std::uint32_t image : {3u, 4u}) fluid_.x(1)[image] += box_quanta;
+  residents.settle(fluid_);
+  std::vector<BufferReader> no_messages;
+  const auto move_up = [&](std::uint32_t i, double way) {
+    fluid_.x(1)[i] += quanta(1, way);
+    residents.moved(std::abs(way));
+  };
+
+  move_up(0, 0.2 * skin);
+  fluid_.v(1)[0] = 3.0;
+  ASSERT_TRUE(residents.lasts() && residents.refresh(fluid_, no_messages));
+  EXPECT_EQ(fluid_.x(1)[3], fluid_.x(1)[0] + box_quanta);
+  EXPECT_EQ(fluid_.v(1)[3], 3.0);
+  EXPECT_EQ(fluid_.x(1)[4], fluid_.x(1)[1] + box_quanta);
+  EXPECT_NEAR(length(1, fluid_.x(1)[3]), height + 0.5 + 0.2 * skin, 1e-9);
+
+  move_up(1, -0.2 * skin);  // below the border: its image is owned now
+  ASSERT_TRUE(residents.lasts() && residents.refresh(fluid_, no_messages));
+  EXPECT_EQ(fluid_.x(1)[4], fluid_.x(1)[1] + box_quanta);
+
+  move_up(2, -0.8 * skin);
+  residents.moved(0.0);
+  ASSERT_TRUE(residents.lasts());
+  EXPECT_FALSE(residents.refresh(fluid_, no_messages));
+  residents.leave(fluid_);
+  EXPECT_EQ(fluid_.id, (Ids{1, 3, 2}));
+}
+
 TEST_F(ResidentsTest, a_stay_ends_when_a_stranger_comes_near) {
   settle({{1, 6.0}, {4, 3.5}});
   EXPECT_TRUE(receive({{4, 3.5}, {9, 4.0 - 1.0 - 0.7 * skin}}));
