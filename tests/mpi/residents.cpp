@@ -145,40 +145,60 @@ TEST_F(ResidentsTest, of_a_step_the_largest_displacement_counts_once) {
   EXPECT_TRUE(receive({{4, 3.5 + 0.4 * skin}}));
 }
 
-/// Of three PPs above the border along y the first two have images beyond the other one.
-TEST_F(ResidentsTest, images_of_own_PPs_move_with_them_until_one_was_not_here) {
-  Region<2> lower = region_;
-  for (double* y : {&lower.low[1], &lower.high[1]}) *y -= box_quanta;
-  Residents<2> residents(built_.model, region_,
-                         {{widened(built_.model, lower, 1.0 + skin), Vec<2, double>{{0.0, box_quanta}}}});
-  const double height = 10.8;
-  settle({{1, 6.0, 0.5}, {2, 6.0, 0.01}, {3, 6.0, 1.0 + 1.2 * skin}, {1, 6.0, 0.5}, {2, 6.0, 0.01}});
-  for (const std::uint32_t image : {3u, 4u}) fluid_.x(1)[image] += box_quanta;
-  residents.settle(fluid_);
-  std::vector<BufferReader> no_messages;
-  const auto move_up = [&](std::uint32_t i, double way) {
-    fluid_.x(1)[i] += quanta(1, way);
-    residents.moved(std::abs(way));
-  };
+/// PPs above the border along y, and their images beyond the other one.
+class OwnImages : public ResidentsTest {
+ protected:
+  OwnImages() : residents_(built_.model, region_, {{widened(built_.model, below(region_), 1.0 + skin), up_}}) {}
 
+  /// PP 3 is too high for an image.
+  void settle_with_images() {
+    settle({{1, 6.0, 0.5}, {2, 6.0, 0.01}, {3, 6.0, 1.0 + 1.2 * skin}, {1, 6.0, 0.5}, {2, 6.0, 0.01}});
+    for (const std::uint32_t image : {3u, 4u}) fluid_.x(1)[image] += box_quanta;
+    residents_.settle(fluid_);
+  }
+  void move_up(std::uint32_t i, double way) {
+    fluid_.x(1)[i] += quanta(1, way);
+    residents_.moved(std::abs(way));
+  }
+  bool stays() {
+    std::vector<BufferReader> no_messages;
+    EXPECT_TRUE(residents_.lasts());
+    return residents_.refresh(fluid_, no_messages);
+  }
+
+  Residents<2> residents_;
+
+ private:
+  static constexpr Vec<2, double> up_{{0.0, box_quanta}};
+  static Region<2> below(const Region<2>& region) { return {region.low - up_, region.high - up_}; }
+};
+
+TEST_F(OwnImages, move_with_their_PPs) {
+  settle_with_images();
   move_up(0, 0.2 * skin);
   fluid_.v(1)[0] = 3.0;
-  ASSERT_TRUE(residents.lasts() && residents.refresh(fluid_, no_messages));
+  ASSERT_TRUE(stays());
   EXPECT_EQ(fluid_.x(1)[3], fluid_.x(1)[0] + box_quanta);
   EXPECT_EQ(fluid_.v(1)[3], 3.0);
   EXPECT_EQ(fluid_.x(1)[4], fluid_.x(1)[1] + box_quanta);
-  EXPECT_NEAR(length(1, fluid_.x(1)[3]), height + 0.5 + 0.2 * skin, 1e-9);
+}
 
-  move_up(1, -0.2 * skin);  // below the border: its image is owned now
-  ASSERT_TRUE(residents.lasts() && residents.refresh(fluid_, no_messages));
+TEST_F(OwnImages, are_owned_where_their_PP_has_crossed_the_border) {
+  settle_with_images();
+  move_up(1, -0.2 * skin);
+  ASSERT_TRUE(stays());
   EXPECT_EQ(fluid_.x(1)[4], fluid_.x(1)[1] + box_quanta);
-
-  move_up(2, -0.8 * skin);
-  residents.moved(0.0);
-  ASSERT_TRUE(residents.lasts());
-  EXPECT_FALSE(residents.refresh(fluid_, no_messages));
-  residents.leave(fluid_);
+  residents_.leave(fluid_);
   EXPECT_EQ(fluid_.id, (Ids{1, 3, 2}));
+}
+
+TEST_F(OwnImages, end_a_stay_where_one_comes_near_that_was_not_here) {
+  settle_with_images();
+  move_up(2, -0.4 * skin);
+  ASSERT_TRUE(stays());
+  move_up(2, -0.4 * skin);
+  residents_.moved(0.0);
+  EXPECT_FALSE(stays());
 }
 
 TEST_F(ResidentsTest, a_stay_ends_when_a_stranger_comes_near) {
