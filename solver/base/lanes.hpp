@@ -188,10 +188,13 @@ MAPPM_INLINE T sum_of_lanes(const Simd<T, Abi>& lanes) {
 }
 /// The library takes three times as long.
 MAPPM_INLINE std::uint32_t sum_of_lanes(const UInt32Lanes& lanes) {
+#if defined(__AVX2__)
 #if defined(__AVX512F__)
-  return static_cast<std::uint32_t>(_mm512_reduce_add_epi32(detail::same_bits<__m512i>(lanes)));
-#elif defined(__AVX2__)
+  const auto whole = detail::same_bits<__m512i>(lanes);
+  const __m256i all = _mm256_add_epi32(_mm512_castsi512_si256(whole), _mm512_extracti64x4_epi64(whole, 1));
+#else
   const auto all = detail::same_bits<__m256i>(lanes);
+#endif
   __m128i sum = _mm_add_epi32(_mm256_castsi256_si128(all), _mm256_extracti128_si256(all, 1));
   sum = _mm_add_epi32(sum, _mm_shuffle_epi32(sum, 0b01'00'11'10));
   return static_cast<std::uint32_t>(_mm_cvtsi128_si32(_mm_add_epi32(sum, _mm_shuffle_epi32(sum, 0b10'11'00'01))));

@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #ifdef MAPPM_FLOATING_SUMS
@@ -125,7 +126,7 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
         };
         kept_[parts * band + (alone ? inner : rest)].add(
             place, near, [&](const NearBlock& other) { return all || reaches_inside[other.block] != 0; }, is_wide,
-            [&](const NearBlock& other) { return lanes_near(fluid, place, row[D - 1], other); });
+            [&](const NearBlock& other) { return lanes_near(fluid, grid, place, row[D - 1], other); });
       });
     });
     for (const Part part : {inner, rest}) blocks_.expect(kept_[parts * band + part].blocks());
@@ -156,13 +157,13 @@ void FluidPass<D, Numbers>::for_each_block_list(const FluidParticles<D>& fluid, 
     }
     search.near.find(grid, box);
     std::vector<NearBlock>& candidates = search.candidates;
-    candidates.clear();
-    std::uint32_t next = own;  // a block on the border of two rows is found in both
+    candidates.assign(1, {own, row[D - 1]});
+    std::uint32_t next = own + 1;  // a block on the border of two rows is found in both
     for (std::size_t n = 0; n < search.near.count(); ++n) {
       const auto range = search.near.range(grid, n);
       if (range.end <= range.first) continue;
       for (next = std::max(next, range.first / lanes); next * lanes < range.end; ++next)
-        candidates.push_back({next, search.near.gap(n)});
+        candidates.push_back({next, search.near.plane(n)});
     }
     search.measured += candidates.size() * lanes * lanes;
     if (search.found.size() < candidates.size() * lanes) search.found.resize(candidates.size() * lanes);
@@ -176,7 +177,7 @@ void FluidPass<D, Numbers>::for_each_block_list(const FluidParticles<D>& fluid, 
         counts[lane] += near ? 1 : 0;
       });
     };
-    measure(candidates[0], std::true_type{});
+    measure(candidates.front(), std::true_type{});
     for (std::size_t n = 1; n < candidates.size(); ++n) measure(candidates[n], std::false_type{});
     for (std::uint32_t place = first; place < last; ++place) {
       const std::uint32_t lane = place % lanes;
@@ -205,14 +206,15 @@ MAPPM_INLINE void FluidPass<D, Numbers>::measure_all(std::uint32_t own, std::uin
   }
 }
 
-/// The lanes of a block that are near a PP and not only seem so: one a bit.
+/// The lanes of a block that are PPs near a PP of this plane, and do not only seem so: one a bit.
 template <int D, class Numbers>
-std::uint16_t FluidPass<D, Numbers>::lanes_near(const FluidParticles<D>& fluid, std::uint32_t place, int plane,
-                                                const NearBlock& other) const {
+std::uint16_t FluidPass<D, Numbers>::lanes_near(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
+                                                std::uint32_t place, int plane, const NearBlock& other) const {
+  const Vec<D, double> x = fluid.position(place - blocks_.gap(plane));
+  const std::uint32_t first = other.block * lanes - blocks_.gap(other.plane);
   unsigned near = 0;
-  for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-    const Vec<D, double> d = separation(model_.pair, fluid.position(other.block * lanes + lane - other.gap) -
-                                                         fluid.position(place - blocks_.gap(plane)));
+  for (std::uint32_t lane = 0; lane < std::min(lanes, grid.plane_start(other.plane + 1) - first); ++lane) {
+    const Vec<D, double> d = separation(model_.pair, fluid.position(first + lane) - x);
     bool apart = true;
     for (int axis = 0; axis < D; ++axis) apart = apart && std::fabs(d[axis]) <= Numbers::largest_extent;
     near |= apart ? 1u << lane : 0u;
@@ -235,7 +237,7 @@ void FluidPass<D, Numbers>::sum_lists_of(Part part, const CellGrid<D>& grid) {
   });
 }
 
-/// Whether each block is so wide that its lanes must be named; empty where none can be.
+/// Whether each block is so wide, or has lanes of a gap, that its lanes must be named; empty where none need be.
 template <int D, class Numbers>
 std::vector<std::uint8_t> FluidPass<D, Numbers>::wide_blocks(const FluidParticles<D>& fluid,
                                                              const CellGrid<D>& grid) const {
@@ -246,7 +248,7 @@ std::vector<std::uint8_t> FluidPass<D, Numbers>::wide_blocks(const FluidParticle
       for (int axis = 0; axis < D; ++axis) {
         const auto first = fluid.x(axis).begin() + i;
         const auto [least, most] = std::minmax_element(first, first + std::min(lanes, end - i));
-        if ((*most - *least) * model_.pair.length[axis] > Numbers::largest_extent)
+        if (end - i < lanes || (*most - *least) * model_.pair.length[axis] > Numbers::largest_extent)
           wide[(i + blocks_.gap(plane)) / lanes] = 1;
       }
   return wide;

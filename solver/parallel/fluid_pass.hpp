@@ -101,7 +101,8 @@ class FluidPass {
   using Centre = PairCentre<D, Numbers>;
   /// What a thread searches with.
   struct NearBlock {
-    std::uint32_t block, gap;  // place of a PP of its plane less its index
+    std::uint32_t block;
+    int plane;  // of cells
   };
   struct Search {
     NearRows<D> near;
@@ -117,7 +118,7 @@ class FluidPass {
                            typename Numbers::Real square_of_reach, Search& search, Work&& work);
   template <bool is_own, class Found>
   void measure_all(std::uint32_t own, std::uint32_t other, typename Numbers::Real square_of_reach, Found&& found) const;
-  std::uint16_t lanes_near(const FluidParticles<D>& fluid, std::uint32_t place, int plane,
+  std::uint16_t lanes_near(const FluidParticles<D>& fluid, const CellGrid<D>& grid, std::uint32_t place, int plane,
                            const NearBlock& other) const;
   template <class Work>
   void for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row, Search& search,

@@ -102,6 +102,8 @@ bool Halo<D>::end_exchange(State<D>& state, Residents<D>& residents, std::vector
 /// where those that stay are already.
 template <int D>
 void Halo<D>::choose(FluidParticles<D>& fluid, bool own_images_alone) {
+  const auto is_own = [](const NeededRegion<D>& needed) { return needed.own_shift.has_value(); };
+  if (own_images_alone && std::ranges::none_of(needed_, is_own)) return;
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     Vec<D, double> x = fluid.position(i);
     if (interior_.contains(x)) continue;

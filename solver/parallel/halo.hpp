@@ -1,8 +1,8 @@
 // The two message pairs per neighbour and step.
 //   1. `exchange`: every particle and solid goes to each region in whose margin it lies now. Whether the receiver owns
 //      it (a migrant) or holds it as a ghost or copy follows from its position alone, so migration and halo are one
-//      message: the paper's steps (i)-(iv) and (x)-(xi). It begins with the step in which the sender's stay will end
-//      (residents.hpp).
+//      message: the paper's steps (i)-(iv) and (x)-(xi). PPs whose images the process needs itself are no message. It
+//      begins with the step in which the sender's stay will end (residents.hpp).
 //   2. `send_home`: what FPs of copies received from the PPs of this region goes to the owner of the solid: the paper's
 //      steps (vii) and (viii).
 #pragma once

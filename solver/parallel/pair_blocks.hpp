@@ -74,10 +74,10 @@ class PairBlocks {
         for (std::uint32_t lane = 0; lane < lanes; lane += lane_count) {
           Vec<D, Lanes> x, v;
           for (int axis = 0; axis < D; ++axis) {
-            x[axis] = load_lanes(&fluid.x(axis)[i + lane]);
-            v[axis] = load_lanes(&fluid.v(axis)[i + lane]);
+            x[axis] = load_lanes(fluid.x(axis).data() + i + lane);
+            v[axis] = load_lanes(fluid.v(axis).data() + i + lane);
           }
-          lay(model, numbers, place + lane, x, v, load_lanes(&fluid.density()[i + lane]));
+          lay(model, numbers, place + lane, x, v, load_lanes(fluid.density().data() + i + lane));
         }
         // Lanes of a gap are nobody's partners: they lie far from the plane.
         auto& slow = blocks_[place / lanes].x[D - 1];

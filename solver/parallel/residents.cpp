@@ -136,7 +136,7 @@ bool Residents<D>::refresh(FluidParticles<D>& fluid, std::span<BufferReader> rea
   std::copy(owned_.begin(), owned_.end(), up_to_date_.begin());
   std::fill(up_to_date_.begin() + static_cast<std::ptrdiff_t>(near_), up_to_date_.end(), 0);
   for (std::size_t n = 0; n < needed_.size(); ++n)
-    if (needed_[n].own_shift && !refresh_own(fluid, n)) return false;
+    if (needed_[n].own_shift) refresh_own(fluid, n);
   sequences_.resize(readers.size());
   for (std::size_t n = 0; n < readers.size(); ++n)
     if (!refresh(fluid, readers[n], sequences_[n])) return false;
@@ -150,22 +150,17 @@ bool Residents<D>::refresh(FluidParticles<D>& fluid, std::span<BufferReader> rea
   return true;
 }
 
-/// An image that was not here at the start of the stay is a stranger, as one from another process.
 template <int D>
-bool Residents<D>::refresh_own(FluidParticles<D>& fluid, std::size_t n) {
+void Residents<D>::refresh_own(FluidParticles<D>& fluid, std::size_t n) {
   const Vec<D, double>& shift = *needed_[n].own_shift;
   for (const Candidate& candidate : candidates_[n]) {
-    if (!is_needed(fluid, n, candidate)) continue;
-    if (candidate.image == none) {
-      if (noticed_.contains(fluid.position(candidate.place) + shift)) return false;
-      continue;
-    }
+    // What was too far away for an image at the start of the stay cannot come near in it.
+    if (candidate.image == none || !is_needed(fluid, n, candidate)) continue;
     const std::uint32_t image = places_[candidate.image];
     for (int axis = 0; axis < D; ++axis) fluid.x(axis)[image] = fluid.x(axis)[candidate.place] + shift[axis];
     for (std::size_t f = D; f < fluid.field.size(); ++f) fluid.field[f][image] = fluid.field[f][candidate.place];
     up_to_date_[candidate.image] = 1;
   }
-  return true;
 }
 
 template <int D>

@@ -30,7 +30,7 @@ namespace mappm {
 /// In rcut. More of it makes stays longer and lists wider: from .06 to .2, a step took least time between .1 and .12,
 /// in the plane and in space.
 inline constexpr double skin = 0.1;
-static_assert(skin < 0.15, "lanes of gaps lie 4 rcut from their plane (far_from), and must from all that it can meet");
+static_assert(skin < 0.15, "blocks that lists join must be told apart in single precision (largest_extent)");
 
 /// `region` widened by a length (rcut) on every side, to whole quanta.
 template <int D>
@@ -70,7 +70,7 @@ class Residents {
   void settle(const FluidParticles<D>& fluid, bool single_step = false);
   /// In a stay that lasts: adds those of this process' own PPs that lie in region n of `needed` now.
   void select(const FluidParticles<D>& fluid, std::size_t n, std::vector<std::uint32_t>& chosen) const;
-  /// PPs that others own or may come to own: all those that messages can change.
+  /// PPs that others own or may come to own, and images of own ones: all those that `refresh` can change.
   std::span<const std::uint32_t> foreign() const { return places_; }
   /// PPs that were outside the region at the start of the stay and may lie in it now.
   std::span<const std::uint32_t> near_outside() const { return near_outside_; }
@@ -92,7 +92,7 @@ class Residents {
   const std::uint32_t* slot_of(std::uint64_t id) const;
   const std::uint32_t* next(const std::uint32_t* slot) const;
   bool refresh(FluidParticles<D>& fluid, BufferReader& reader, std::vector<std::uint32_t>& sequence);
-  bool refresh_own(FluidParticles<D>& fluid, std::size_t n);
+  void refresh_own(FluidParticles<D>& fluid, std::size_t n);
 
   const Model<D>& model_;
   Region<D> region_, may_own_, deep_, noticed_, needless_;
@@ -113,7 +113,8 @@ class Residents {
            needed_[n].region.contains(fluid.position(candidate.place));
   }
   std::vector<std::vector<Candidate>> candidates_;  // of those in `may_enter_`
-  // Those that others own, or may come to own: first, `near_` of them, the ones near the border of the region.
+  // Those that others own, or may come to own, and images: first, `near_` of them, the ones near the border of the
+  // region.
   std::vector<std::uint32_t> places_;
   std::size_t near_ = 0;
   std::vector<std::uint32_t> near_outside_;

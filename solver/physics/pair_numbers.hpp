@@ -70,7 +70,8 @@ class SinglePairs {
   using Sum = std::int32_t;
   using Rounding = Rounded;
   using ListRounding = Rounded;
-  // Within a window of 8 lie two blocks side by side, between them the reach of lists and a cell, and the reach on.
+  // Along x a window of 8 holds two such blocks, between them the reach of lists and a narrow cell, and that reach once
+  // more. Across, blocks lie in rows, which are not far wider than the reach.
   static constexpr double largest_extent = 2.5;
   using RealLanes = FloatLanes;
 

@@ -77,12 +77,37 @@ TEST(Lanes, floats_are_rounded_as_one_by_one) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   for (const float value : {0.5f, 1.5f, -2.5f, 8388607.5f, 2147483520.0f, -0x1p31f, 0x1p31f, -0x1.1p31f, infinity,
                             -infinity, std::numeric_limits<float>::quiet_NaN()}) {
-    FloatLanes lanes(1.25f);
-    lanes[lane_count - 1] = value;
-    const Int32Lanes fixed = to_fixed(lanes);
-    EXPECT_EQ(fixed[0], 1);
-    EXPECT_EQ(fixed[lane_count - 1], to_fixed(value)) << value;
+    for (std::size_t odd = 0; odd < FloatLanes::size(); ++odd) {
+      FloatLanes lanes(1.25f);
+      lanes[odd] = value;
+      const Int32Lanes fixed = to_fixed(lanes);
+      for (std::size_t lane = 0; lane < FloatLanes::size(); ++lane)
+        EXPECT_EQ(fixed[lane], lane == odd ? to_fixed(value) : 1) << value;
+    }
   }
+}
+
+TEST(Lanes, sums_of_32_bits_wrap) {
+  std::uint32_t sum = 0;
+  UInt32Lanes lanes;
+  for (std::size_t lane = 0; lane < UInt32Lanes::size(); ++lane) {
+    const auto value = static_cast<std::uint32_t>(0xc0000001u + 0x01010101u * lane * lane);
+    lanes[lane] = value;
+    sum += value;
+  }
+  EXPECT_EQ(sum_of_lanes(lanes), sum);
+}
+
+TEST(Lanes, an_excess_is_shed_at_the_end) {
+  const auto a = ramp(-7.4, 3.3);
+  const UIntLanes raw = to_fixed_with_excess(load_lanes(a.data()));
+  std::uint64_t sum = 0;
+  for (int lane = 0; lane < lane_count; ++lane) {
+    EXPECT_EQ(raw[lane], to_fixed_with_excess(a[lane]));
+    sum += raw[lane];
+  }
+  EXPECT_EQ(static_cast<std::int64_t>(sum - lane_count * rounding_excess),
+            sum_of_lanes(to_fixed(load_lanes(a.data()))));
 }
 
 }  // namespace
