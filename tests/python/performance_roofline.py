@@ -40,10 +40,10 @@ def test_it_keeps_figures_that_a_chart_is_made_of(table: dict, tmp_path: Path) -
 def test_the_census_counts_what_the_law_writes(table: dict) -> None:
     """By hand, Wendland C2 with transport velocity in the plane. Multiplications: r 2, kernel 6, G 1, pressure, shift
     and friction 3, impulse 4, shift 4, density 5. Additions: q cut 1, r 2, v 2, volume terms 2, kernel 2, impulse 2,
-    density 2, and 5 roundings. Integers: 5 sums of three terms."""
+    density 2, and 5 roundings, which keep their excess. Integers: 5 sums, added to both."""
     work = "figure fluid_2d_39.block_pairs."
     counted = {name.removeprefix(work): value for name, value in table["figures"].items() if name.startswith(work)}
-    assert counted == {"multiplications": 25, "additions": 18, "roots": 1, "integers": 15, "loads": 13, "stores": 6}
+    assert counted == {"multiplications": 25, "additions": 18, "roots": 1, "integers": 10, "loads": 13, "stores": 6}
 
 
 def test_instructions_repeat_exactly() -> None:
