@@ -28,8 +28,8 @@ inline constexpr double fixed_range = 0x1p51;
 
 inline constexpr double rounding_constant = 0x1.8p52;
 
-/// `to_fixed` and this excess, modulo 2^64: a sum of many can shed it all at once.
 inline constexpr std::uint64_t rounding_excess = std::bit_cast<std::uint64_t>(rounding_constant);
+/// `to_fixed` plus `rounding_excess`, modulo 2^64: a sum of many can shed it all at once.
 inline std::uint64_t to_fixed_with_excess(double x) { return std::bit_cast<std::uint64_t>(x + rounding_constant); }
 
 /// Rounds x (|x| < 2^51) to the nearest integer, ties to even, by the bits of x + 1.5 2^52. Lanes have the same

@@ -110,7 +110,7 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
   const std::vector<std::uint8_t> inside = places_in(fluid, grid, region);  // of each place
   std::vector<std::uint8_t> reaches_inside(blocks_.size());                 // of each block
   for (std::size_t block = 0; block < blocks_.size(); ++block)
-    reaches_inside[block] = std::ranges::count(std::span(inside).subspan(block * lanes, lanes), 1) > 0 ? 1 : 0;
+    reaches_inside[block] = std::ranges::max(std::span(inside).subspan(block * lanes, lanes));
   const std::vector<std::uint8_t> wide = wide_blocks(fluid, grid);
   const int height = band_height(grid);
   kept_.resize(parts * static_cast<std::size_t>((grid.count(D - 1) + height - 1) / height));

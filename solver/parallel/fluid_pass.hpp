@@ -99,11 +99,11 @@ class FluidPass {
  private:
   enum Part : std::size_t { inner, rest, parts };
   using Centre = PairCentre<D, Numbers>;
-  /// What a thread searches with.
   struct NearBlock {
     std::uint32_t block;
     int plane;  // of cells
   };
+  /// What a thread searches with.
   struct Search {
     NearRows<D> near;
     Lists lists;
