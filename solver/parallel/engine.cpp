@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "parallel/fluid_motion.hpp"
 #include "parallel/redistribute.hpp"
 
 namespace mappm {
@@ -235,14 +236,6 @@ void ParallelEngine<D>::move_solids(const std::vector<HomeReport<D>>& from_other
   }
 }
 
-/// Keeps the first fault of PP i as the error of the run.
-template <int D>
-[[gnu::noinline]] void ParallelEngine<D>::report(RangeFault fault, std::uint32_t i, const Vec<D, double>& v,
-                                                 const NeighbourSums<D>& sums) {
-#pragma omp critical
-  if (range_error_.empty()) range_error_ = range_message(fault, state_.step, state_.fluid.id[i], v, sums);
-}
-
 template <int D>
 void ParallelEngine<D>::find_rows() {
   rows_.clear();
@@ -265,111 +258,27 @@ void ParallelEngine<D>::find_rows() {
 /// filled.
 template <int D>
 void ParallelEngine<D>::move_fluid() {
-  FluidParticles<D>& fluid = state_.fluid;
-  const ParticleStep<D> constants = particle_step(model_, state_.step);
-  const Region<D>& region = halo_->region();
-  struct Moved {
-    std::uint64_t count = 0;
-    Lanes square{0.0};       // of the largest displacement, rcut^2
-    Vec<D, Int128> given{};  // by the field of force
-  };
-  const auto keep_farthest = [&](const auto& way, Moved& moved) {
-    const auto length = separation(model_.pair, way);
-    moved.square = larger(moved.square, Lanes(dot(length, length)));
-  };
-  /// `give` passes the new state on.
-  const auto move_one = [&]<bool field>(std::uint32_t i, NeighbourSums<D> sums, Moved& moved, std::bool_constant<field>,
-                                        auto&& give) {
-    Vec<D, double> x, v;
-    for (int axis = 0; axis < D; ++axis) {
-      x[axis] = fluid.x(axis)[i];
-      v[axis] = fluid.v(axis)[i];
-    }
-    if (!region.contains(x)) return;
-    if constexpr (field) {
-      const Vec<D, std::int64_t> impulse = field_impulse(model_.fluid_field, x);
-      sums.impulse += impulse;
-      for (int axis = 0; axis < D; ++axis) moved.given[axis] += impulse[axis];
-    }
-    const Vec<D, double> before = x;
-    const RangeFault fault = advance(x, v, fluid.density()[i], sums, constants);
-    if (fault != RangeFault::none) [[unlikely]]
-      report(fault, i, v, sums);
-    for (int axis = 0; axis < D; ++axis) {
-      fluid.x(axis)[i] = x[axis];
-      fluid.v(axis)[i] = v[axis];
-    }
-    give(x, v, fluid.density()[i]);
-    keep_farthest(x - before, moved);
-    ++moved.count;
-  };
-  /// False, and nothing done, where one of them is out of range or not in the region.
-  const auto move_lanes = [&](std::uint32_t i, const NeighbourSums<D, IntLanes>& sums, Moved& moved, auto&& give) {
-    Vec<D, Lanes> x, v;
-    auto outside = Lanes(0.0) > Lanes(0.0);
-    for (int axis = 0; axis < D; ++axis) {
-      x[axis] = load_lanes(&fluid.x(axis)[i]);
-      v[axis] = load_lanes(&fluid.v(axis)[i]);
-      outside = outside || x[axis] < region.low[axis] || x[axis] >= region.high[axis];
-    }
-    const auto motion = motion_of(x, v, sums, constants);
-    if (any_of_lanes(outside || motion.beyond.any())) [[unlikely]]
-      return false;
-    for (int axis = 0; axis < D; ++axis) {
-      store_lanes(motion.x[axis], &fluid.x(axis)[i]);
-      store_lanes(motion.v[axis], &fluid.v(axis)[i]);
-    }
-    store_lanes(motion.density, &fluid.density()[i]);
-    give(motion.x, motion.v, motion.density);
-    keep_farthest(motion.x - x, moved);
-    moved.count += lane_count;
-    return true;
-  };
-  Moved all;
-  const auto collect = [&](const Moved& moved) {
-    all.count += moved.count;
-    all.square = larger(all.square, moved.square);
-    for (int axis = 0; axis < D; ++axis) all.given[axis] += moved.given[axis];
-  };
-  const auto move = [&]<bool field>(auto& pass, std::bool_constant<field> with_field) {
+  FluidMotion<D> all(model_, state_.step, halo_->region(), range_error_);
+  std::visit(
+      [&](auto& pass) {
 #pragma omp parallel num_threads(options_.threads) if (options_.threads > 1)
-    {
-      Moved moved;
+        {
+          FluidMotion<D> motion(model_, state_.step, halo_->region(), range_error_);
 #pragma omp for schedule(static)
-      for (std::size_t n = 0; n < rows_.size(); ++n) {
-        const Row& row = rows_[n];
-        const int plane = row.plane;
-        const std::uint32_t last = row.last;
-        for (std::uint32_t i = row.first; i < last;) {
-          const auto give = [&](const auto& x, const auto& v, const auto& density) __attribute__((always_inline)) {
-            pass.moved(i, plane, x, v, density);
-          };
-          if constexpr (!field)
-            if (i + lane_count <= last && pass.begins_lanes(i, plane) &&
-                move_lanes(i, pass.sums_of_lanes(i, plane), moved, give)) {
-              i += lane_count;
-              continue;
-            }
-          move_one(i, pass.sums(i, plane), moved, with_field, give);
-          ++i;
-        }
-      }
+          for (std::size_t n = 0; n < rows_.size(); ++n) {
+            const Row& row = rows_[n];
+            motion.move(pass, state_.fluid, row.first, row.first + pass.gap(row.plane), row.last - row.first);
+          }
 #pragma omp critical
-      collect(moved);
-    }
-    Moved entered;
-    for (const std::uint32_t i : residents_->near_outside())
-      move_one(i, pass.sums(i), entered, with_field, [](auto&&...) {});
-    collect(entered);
-  };
-  std::visit([&](auto& pass) { with_force_field(model_, state_.step, [&](auto field) { move(pass, field); }); }, pass_);
-  double square = 0.0;
-  for (int lane = 0; lane < lane_count; ++lane) square = std::max(square, static_cast<double>(all.square[lane]));
-  residents_->moved(std::sqrt(square));
-  for (int axis = 0; axis < D; ++axis)
-    state_.outside_impulse[axis] +=
-        all.given[axis] +
-        static_cast<Int128>(all.count) * static_cast<std::int64_t>(constants.kick[axis] / velocity_quantum);
+          all.add(motion);
+        }
+        FluidMotion<D> entered(model_, state_.step, halo_->region(), range_error_);
+        for (const std::uint32_t i : residents_->near_outside()) entered.move(pass, state_.fluid, i, pass.place(i), 1);
+        all.add(entered);
+      },
+      pass_);
+  residents_->moved(all.farthest());
+  state_.outside_impulse += all.impulse();
 }
 
 template class ParallelEngine<2>;

@@ -58,7 +58,6 @@ class ParallelEngine {
   void explain_pairs();
   void find_rows();
   void move_fluid();
-  void report(RangeFault fault, std::uint32_t i, const Vec<D, double>& v, const NeighbourSums<D>& sums);
   std::vector<HomeReport<D>> collect_reports();
   void move_solids(const std::vector<HomeReport<D>>& from_others);
 

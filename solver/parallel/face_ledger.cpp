@@ -98,7 +98,7 @@ Vec<D, Int128> FaceLedger<D>::received(const FluidParticles<D>& fluid, const Mod
   std::visit(
       [&](const auto& numbered) {
         for (std::uint32_t i = 0; i < fluid.size(); ++i)
-          if (region_.contains(point_of(model_, fluid, i).x)) add(sum, numbered.sums(i).impulse, 1);
+          if (region_.contains(point_of(model_, fluid, i).x)) add(sum, numbered.sums(numbered.place(i)).impulse, 1);
       },
       pass);
   for (std::size_t k = 0; k < frozen.size(); ++k)

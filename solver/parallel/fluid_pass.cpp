@@ -224,7 +224,7 @@ std::uint16_t FluidPass<D, Numbers>::lanes_near(const FluidParticles<D>& fluid, 
 
 template <int D, class Numbers>
 void FluidPass<D, Numbers>::sum_rest(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
-  blocks_.fill(model_, numbers_, fluid, grid, [&](std::uint32_t block) { return foreign_[block] != 0; });
+  blocks_.refill(model_, numbers_, fluid, [&](std::uint32_t block) { return foreign_[block] != 0; });
   sum_lists_of(rest, grid);
 }
 

@@ -55,12 +55,11 @@ class FluidPass {
   /// The same in two parts, of which only the second looks at foreign PPs.
   void sum_inner(const CellGrid<D>& grid) { sum_lists_of(inner, grid); }
   void sum_rest(FluidParticles<D>& fluid, const CellGrid<D>& grid);
-  /// After a sum: the new state of PP i of this plane, or of those that lie side by side with it (`begins_lanes`). Each
-  /// PP that is not foreign must be given before the next sum.
+  /// After a sum: the new state of the PP at this place, or of those that lie side by side from there on, as many as
+  /// there are lanes. Each PP that is not foreign must be given before the next sum.
   template <class Real>
-  MAPPM_INLINE void moved(std::uint32_t i, int plane, const Vec<D, Real>& x, const Vec<D, Real>& v,
-                          const Real& density) {
-    if (!kept_.empty()) blocks_.lay(model_, numbers_, i + blocks_.gap(plane), x, v, density);
+  MAPPM_INLINE void moved(std::uint32_t place, const Vec<D, Real>& x, const Vec<D, Real>& v, const Real& density) {
+    if (!kept_.empty()) blocks_.lay(model_, numbers_, place, x, v, density);
   }
   /// Both in one, for PPs that will not keep their order.
   void sum_once(FluidParticles<D>& fluid, const CellGrid<D>& grid);
@@ -69,17 +68,15 @@ class FluidPass {
   void add_frozen(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
                   std::vector<NeighbourSums<D>>& frozen_sums);
 
-  /// Sums of PP i, which lies in this plane of cells.
-  NeighbourSums<D> sums(std::uint32_t i, int plane) const {
-    return numbers_.sums(blocks_.sums(i + blocks_.gap(plane)));
+  /// The place of PP i; what places are more than indices in a plane of cells.
+  std::uint32_t place(std::uint32_t i) const { return blocks_.place(i); }
+  std::uint32_t gap(int plane) const { return blocks_.gap(plane); }
+  /// Sums of the PP at this place.
+  NeighbourSums<D> sums(std::uint32_t place) const { return numbers_.sums(blocks_.sums(place)); }
+  /// Sums of as many PPs from this place on as there are lanes, of whose number it must be a multiple.
+  MAPPM_INLINE NeighbourSums<D, IntLanes> sums_of_lanes(std::uint32_t place) const {
+    return numbers_.sums(blocks_.sums_of_lanes(place));
   }
-  /// Whether PP i of this plane is the first of as many as there are lanes whose sums lie side by side.
-  bool begins_lanes(std::uint32_t i, int plane) const { return (i + blocks_.gap(plane)) % lane_count == 0; }
-  /// Sums of these.
-  MAPPM_INLINE NeighbourSums<D, IntLanes> sums_of_lanes(std::uint32_t i, int plane) const {
-    return numbers_.sums(blocks_.sums_of_lanes(i + blocks_.gap(plane)));
-  }
-  NeighbourSums<D> sums(std::uint32_t i) const { return numbers_.sums(blocks_.sums(blocks_.place(i))); }
 
   /// After a sum and `add_frozen` in the step in which `fluid` was ordered, with their arguments: what each partner
   /// gave to the PP with this id that lies in the region of the grid, every pair of the pass taken alone; none where

@@ -38,15 +38,27 @@ class PairBlocks {
   using Block = PairBlock<D, Numbers>;
   using Sum = typename Numbers::Sum;
 
-  /// Sums are set to zero. `fluid` is in the order of `grid`. With `chosen` only those blocks for which chosen(block).
+  /// Sums are set to zero. `fluid` is in the order of `grid`.
   void fill(const Model<D>& model, const Numbers& numbers, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
     shifts_ = model.terms.transport;
-    fill(model, numbers, fluid, grid, [](std::uint32_t) { return true; });
+    const int planes = grid.count(D - 1);
+    gaps_.resize(static_cast<std::size_t>(planes));
+    starts_.resize(static_cast<std::size_t>(planes));
+    held_.clear();
+    for (int plane = 0; plane < planes; ++plane) {
+      const std::uint32_t first = grid.plane_start(plane), end = grid.plane_start(plane + 1);
+      starts_[static_cast<std::size_t>(plane)] = first;
+      gaps_[static_cast<std::size_t>(plane)] = static_cast<std::uint32_t>(held_.size()) * lanes - first;
+      for (std::uint32_t i = first; i < end; i += lanes) held_.push_back({i, std::min(lanes, end - i)});
+    }
+    reserve_tightly(blocks_, held_.size());
+    blocks_.resize(held_.size());
+    refill(model, numbers, fluid, [](std::uint32_t) { return true; });
     contributions_.assign(size(), 0);
   }
+  /// The same for those blocks alone for which chosen(block), with the PPs in the same order.
   template <class Chosen>
-  void fill(const Model<D>& model, const Numbers& numbers, FluidParticles<D>& fluid, const CellGrid<D>& grid,
-            Chosen&& chosen) {
+  void refill(const Model<D>& model, const Numbers& numbers, FluidParticles<D>& fluid, Chosen&& chosen) {
     for (auto& values : fluid.field) {
       // Whole blocks are read behind the last particle. They are no partners, but 0 times NaN would not be 0.
       const std::size_t count = values.size();
@@ -54,37 +66,27 @@ class PairBlocks {
       values.resize(count + lanes, 1.0);
       values.resize(count);
     }
-    const int planes = grid.count(D - 1);
-    gaps_.resize(static_cast<std::size_t>(planes));
-    starts_.resize(static_cast<std::size_t>(planes));
-    std::uint32_t places = 0;
-    for (int plane = 0; plane < planes; ++plane) {
-      const std::uint32_t first = grid.plane_start(plane), end = grid.plane_start(plane + 1);
-      starts_[static_cast<std::size_t>(plane)] = first;
-      gaps_[static_cast<std::size_t>(plane)] = places - first;
-      places += (end - first + lanes - 1) / lanes * lanes;
-    }
-    reserve_tightly(blocks_, places / lanes);
-    blocks_.resize(places / lanes);
-    for (int plane = 0; plane < planes; ++plane) {
-      const std::uint32_t end = grid.plane_start(plane + 1);
-      for (std::uint32_t i = grid.plane_start(plane); i < end; i += lanes) {
-        const std::uint32_t place = i + gap(plane);
-        if (!chosen(place / lanes)) continue;
-        for (std::uint32_t lane = 0; lane < lanes; lane += lane_count) {
-          Vec<D, Lanes> x, v;
-          for (int axis = 0; axis < D; ++axis) {
-            x[axis] = load_lanes(fluid.x(axis).data() + i + lane);
-            v[axis] = load_lanes(fluid.v(axis).data() + i + lane);
-          }
-          lay(model, numbers, place + lane, x, v, load_lanes(fluid.density().data() + i + lane));
+    for (std::uint32_t block = 0; block < size(); ++block) {
+      if (!chosen(block)) continue;
+      const std::uint32_t i = held_[block].first;
+      for (std::uint32_t lane = 0; lane < lanes; lane += lane_count) {
+        Vec<D, Lanes> x, v;
+        for (int axis = 0; axis < D; ++axis) {
+          x[axis] = load_lanes(fluid.x(axis).data() + i + lane);
+          v[axis] = load_lanes(fluid.v(axis).data() + i + lane);
         }
-        // Lanes of a gap are nobody's partners: they lie far from the plane.
-        auto& slow = blocks_[place / lanes].x[D - 1];
-        for (std::uint32_t lane = end - i; lane < lanes; ++lane) slow[lane] = Numbers::far_from(slow[0]);
+        lay(model, numbers, block * lanes + lane, x, v, load_lanes(fluid.density().data() + i + lane));
       }
+      // Lanes of a gap are nobody's partners: they lie far from the plane.
+      auto& slow = blocks_[block].x[D - 1];
+      for (std::uint32_t lane = held_[block].count; lane < lanes; ++lane) slow[lane] = Numbers::far_from(slow[0]);
     }
   }
+  /// The PPs of a block, which lie side by side.
+  struct Held {
+    std::uint32_t first, count;  // the index of the first; how many there are, the other lanes being of a gap
+  };
+  const Held& held(std::uint32_t block) const { return held_[block]; }
 
   /// The PP at `place`, or as many from there on as there are lanes of the state: what they are, with sums of zero.
   template <class Wide>
@@ -193,6 +195,7 @@ class PairBlocks {
   bool shifts_ = false;                       // whether there are any
   std::vector<std::uint32_t> contributions_;  // that lists make to each block in one sum
   std::vector<std::uint32_t> starts_, gaps_;  // of each plane: its first index; its places less its indices
+  std::vector<Held> held_;                    // by each block
   Column<Block> blocks_;
 };
 
