@@ -3,7 +3,7 @@
     python3 -m bench.speed [--quick] [--repeats N] [--json FILE] [--out DIR]
 
 The fluid is that of the case sph_peer: a lattice with a shear wave, 39 neighbours a particle in the plane and 77 in space,
-the same for both codes. Runs alternate, so that what else the machine does meets all of them; a figure is a median, and a
+the same for both codes. MaPPM also runs it without transport velocity, a term that LIGGGHTS' SPH does not have. Runs alternate, so that what else the machine does meets all of them; a figure is a median, and a
 ratio the median of ratios within one round. Prints a line a figure, `ratio NAME VALUE` or `figure NAME VALUE`. Ends with 1
 where a measurement is broken (a run that failed, digests that differ between one process and two), never because the machine is
 slow, and with 77 where LIGGGHTS is not installed.
@@ -29,6 +29,7 @@ from verification.runner import cores
 from verification.solver import ROOT, Options, Run, run
 
 SCENE = ROOT / "cases" / "sph_peer" / "case.toml"
+WITHOUT_TRANSPORT = "fluid.transport=false"
 SKIPPED_CODE = 77  # what ctest takes for skipped
 PEER_SKIN = sph.SKINS[0]
 FLUIDS = {"2d_39": (2, 400), "3d_77": (3, 54)}  # dimension, particles along a side: about 160 000
@@ -117,17 +118,23 @@ def against_peer(meter: Meter, quick: bool, folder: Path, with_peer: bool) -> di
         overrides = scene_of(dimension, (side,) * dimension)
         runs: dict[str, Callable[[], Speed]] = {}
         for ranks in (1, 2):
-            runs[f"own_{ranks}"] = lambda ranks=ranks, o=overrides, f=fluid: own_speed(o, f.steps, ranks, folder)
+            for code, more in (("own", ()), ("plain", (WITHOUT_TRANSPORT,))):
+                runs[f"{code}_{ranks}"] = lambda ranks=ranks, o=overrides + more, f=fluid: own_speed(o, f.steps, ranks, folder)
             if with_peer:
                 runs[f"peer_{ranks}"] = lambda ranks=ranks, f=fluid: peer_speed(f, ranks, folder)
         found = meter.rounds(f"fluid {name}", runs)
-        if found["own_1"][0].digest != found["own_2"][0].digest:
-            raise Broken(f"fluid {name}: the digest on two processes is not that on one")
+        for code in ("own", "plain"):
+            if found[f"{code}_1"][0].digest != found[f"{code}_2"][0].digest:
+                raise Broken(f"fluid {name}: the digest on two processes is not that on one")
         for ranks in (1, 2):
-            figures[f"figure fluid_{name}.particle_steps_per_s_{ranks}"] = median_rate(found[f"own_{ranks}"])
+            own, plain = found[f"own_{ranks}"], found[f"plain_{ranks}"]
+            figures[f"figure fluid_{name}.particle_steps_per_s_{ranks}"] = median_rate(own)
+            figures[f"figure fluid_{name}.without_transport_particle_steps_per_s_{ranks}"] = median_rate(plain)
             if with_peer:
-                figures[f"figure fluid_{name}.liggghts_particle_steps_per_s_{ranks}"] = median_rate(found[f"peer_{ranks}"])
-                figures[f"ratio fluid_{name}.over_liggghts_{ranks}"] = median_ratio(found[f"own_{ranks}"], found[f"peer_{ranks}"])
+                peer = found[f"peer_{ranks}"]
+                figures[f"figure fluid_{name}.liggghts_particle_steps_per_s_{ranks}"] = median_rate(peer)
+                figures[f"ratio fluid_{name}.over_liggghts_{ranks}"] = median_ratio(own, peer)
+                figures[f"ratio fluid_{name}.without_transport_over_liggghts_{ranks}"] = median_ratio(plain, peer)
         figures[f"ratio fluid_{name}.two_processes_over_one"] = median_ratio(found["own_2"], found["own_1"])
         phases = [speed.phases for speed in found["own_1"]]
         for phase in phases[0]:

@@ -6,21 +6,22 @@ from verification.charts import BLUE, DARK, GREEN, GREY, RED, figure_of
 from verification.solid_charts import costs_of_solids
 
 FLUIDS = {"2d_39": "plane, 39 neighbours", "3d_77": "space, 77 neighbours"}
-PHASES = {"pairs": BLUE, "lists": "#6f9cc4", "sort": GREY, "integrate": GREEN, "solids": DARK, "exchange": RED}
+PALE = "#6f9cc4"
+PHASES = {"pairs": BLUE, "lists": PALE, "sort": GREY, "integrate": GREEN, "solids": DARK, "exchange": RED}
 
 
 def speeds(figures: dict[str, float], file: Path) -> None:
     """Particle-steps a second of MaPPM and of LIGGGHTS' SPH on one process and on two; figures of bench/speed.py."""
-    with figure_of(file, 7, 2.8) as axes:
-        for row, (name, words) in enumerate(FLUIDS.items()):
+    codes = {"": ("MaPPM, double", BLUE), "without_transport_": ("without transport velocity", PALE), "liggghts_": ("LIGGGHTS, SPH", GREY)}
+    with figure_of(file, 7, 3.2) as axes:
+        for row, (name, _) in enumerate(FLUIDS.items()):
             for k, ranks in enumerate((1, 2)):
                 place = 2 * row + 0.9 * k
-                for code, color, side in (("", BLUE, -0.18), ("liggghts_", GREY, 0.18)):
+                for side, (code, (words_of_code, color)) in zip((-0.26, 0.0, 0.26), codes.items(), strict=True):
                     rate = figures.get(f"figure fluid_{name}.{code}particle_steps_per_s_{ranks}")
                     if rate is None:
                         continue
-                    label = {"": "MaPPM, double", "liggghts_": "LIGGGHTS, SPH"}[code] if row == k == 0 else None
-                    axes.barh(place + side, rate / 1e6, 0.34, color=color, label=label)
+                    axes.barh(place + side, rate / 1e6, 0.25, color=color, label=words_of_code if row == k == 0 else None)
                     axes.text(rate / 1e6, place + side, f" {rate / 1e6:.2g}", va="center", fontsize=8)
         axes.set_yticks([0, 0.9, 2, 2.9], [f"{words}, {count}" for words in FLUIDS.values() for count in ("one process", "two")])
         axes.invert_yaxis()

@@ -107,11 +107,11 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
   foreign_.assign(blocks_.size(), 0);
   for (const std::uint32_t i : foreign) foreign_[blocks_.place(i) / lanes] = 1;
   const auto square = static_cast<typename Numbers::Real>(reach * reach);
-  const std::vector<std::uint8_t> inside = places_in(fluid, grid, region);  // of each place
-  std::vector<std::uint8_t> reaches_inside(blocks_.size());                 // of each block
+  const std::vector<std::uint8_t> inside = places_in(fluid, region);  // of each place
+  std::vector<std::uint8_t> reaches_inside(blocks_.size());           // of each block
   for (std::size_t block = 0; block < blocks_.size(); ++block)
     reaches_inside[block] = std::ranges::max(std::span(inside).subspan(block * lanes, lanes));
-  const std::vector<std::uint8_t> wide = wide_blocks(fluid, grid);
+  const std::vector<std::uint8_t> wide = wide_blocks(fluid);
   const int height = band_height(grid);
   kept_.resize(parts * static_cast<std::size_t>((grid.count(D - 1) + height - 1) / height));
   for_each_band(grid, [&](int first, int last, Search& search, std::size_t band) {
@@ -121,9 +121,7 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
         const auto is_foreign = [&](const NearBlock& other) { return foreign_[other.block] != 0; };
         const bool alone = apart && foreign_[place / lanes] == 0 && std::ranges::none_of(near, is_foreign);
         const bool all = inside[place] != 0;
-        const auto is_wide = [&](const NearBlock& other) {
-          return !wide.empty() && (wide[other.block] != 0 || wide[place / lanes] != 0);
-        };
+        const auto is_wide = [&](const NearBlock& other) { return wide[other.block] != 0 || wide[place / lanes] != 0; };
         kept_[parts * band + (alone ? inner : rest)].add(
             place, near, [&](const NearBlock& other) { return all || reaches_inside[other.block] != 0; }, is_wide,
             [&](const NearBlock& other) { return lanes_near(fluid, grid, place, row[D - 1], other); });
@@ -239,29 +237,29 @@ void FluidPass<D, Numbers>::sum_lists_of(Part part, const CellGrid<D>& grid) {
 
 /// Whether each block is so wide, or has lanes of a gap, that its lanes must be named; empty where none need be.
 template <int D, class Numbers>
-std::vector<std::uint8_t> FluidPass<D, Numbers>::wide_blocks(const FluidParticles<D>& fluid,
-                                                             const CellGrid<D>& grid) const {
+std::vector<std::uint8_t> FluidPass<D, Numbers>::wide_blocks(const FluidParticles<D>& fluid) const {
   if (Numbers::largest_extent == std::numeric_limits<double>::infinity()) return {};
   std::vector<std::uint8_t> wide(blocks_.size(), 0);
-  for (int plane = 0; plane < grid.count(D - 1); ++plane)
-    for (std::uint32_t end = grid.plane_start(plane + 1), i = grid.plane_start(plane); i < end; i += lanes)
-      for (int axis = 0; axis < D; ++axis) {
-        const auto first = fluid.x(axis).begin() + i;
-        const auto [least, most] = std::minmax_element(first, first + std::min(lanes, end - i));
-        if (end - i < lanes || (*most - *least) * model_.pair.length[axis] > Numbers::largest_extent)
-          wide[(i + blocks_.gap(plane)) / lanes] = 1;
-      }
+  for (std::uint32_t block = 0; block < blocks_.size(); ++block) {
+    const auto& held = blocks_.held(block);
+    if (held.count < lanes) wide[block] = 1;
+    for (int axis = 0; axis < D; ++axis) {
+      const auto first = fluid.x(axis).begin() + held.first;
+      const auto [least, most] = std::minmax_element(first, first + held.count);
+      if ((*most - *least) * model_.pair.length[axis] > Numbers::largest_extent) wide[block] = 1;
+    }
+  }
   return wide;
 }
 
 /// Whether each place holds a PP in `region`.
 template <int D, class Numbers>
-std::vector<std::uint8_t> FluidPass<D, Numbers>::places_in(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
+std::vector<std::uint8_t> FluidPass<D, Numbers>::places_in(const FluidParticles<D>& fluid,
                                                            const Region<D>& region) const {
   std::vector<std::uint8_t> inside(blocks_.size() * lanes, 0);
-  for (int plane = 0; plane < grid.count(D - 1); ++plane)
-    for (std::uint32_t i = grid.plane_start(plane); i < grid.plane_start(plane + 1); ++i)
-      inside[i + blocks_.gap(plane)] = region.contains(fluid.position(i)) ? 1 : 0;
+  for (std::uint32_t block = 0; block < blocks_.size(); ++block)
+    for (std::uint32_t lane = 0; lane < blocks_.held(block).count; ++lane)
+      inside[block * lanes + lane] = region.contains(fluid.position(blocks_.held(block).first + lane)) ? 1 : 0;
   return inside;
 }
 

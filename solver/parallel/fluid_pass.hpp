@@ -134,9 +134,8 @@ class FluidPass {
   PairSums sums_of_pair(const Centre& centre, std::uint32_t place, const Beta& beta) const;
   void prepare(FluidParticles<D>& fluid, const CellGrid<D>& grid);
   void sum_lists_of(Part part, const CellGrid<D>& grid);
-  std::vector<std::uint8_t> wide_blocks(const FluidParticles<D>& fluid, const CellGrid<D>& grid) const;
-  std::vector<std::uint8_t> places_in(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
-                                      const Region<D>& region) const;
+  std::vector<std::uint8_t> wide_blocks(const FluidParticles<D>& fluid) const;
+  std::vector<std::uint8_t> places_in(const FluidParticles<D>& fluid, const Region<D>& region) const;
   int band_height(const CellGrid<D>& grid) const;
   template <class Work>
   void for_each_band(const CellGrid<D>& grid, Work&& work);
