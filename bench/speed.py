@@ -3,10 +3,11 @@
     python3 -m bench.speed [--quick] [--repeats N] [--json FILE] [--out DIR]
 
 The fluid is that of the case sph_peer: a lattice with a shear wave, 39 neighbours a particle in the plane and 77 in space,
-the same for both codes. MaPPM also runs it without transport velocity, a term that LIGGGHTS' SPH does not have. Runs alternate, so that what else the machine does meets all of them; a figure is a median, and a
-ratio the median of ratios within one round. Prints a line a figure, `ratio NAME VALUE` or `figure NAME VALUE`. Ends with 1
-where a measurement is broken (a run that failed, digests that differ between one process and two), never because the machine is
-slow, and with 77 where LIGGGHTS is not installed.
+the same for both codes. MaPPM also runs it without transport velocity, a term that LIGGGHTS' SPH does not have. Runs
+alternate, so that what else the machine does meets all of them; a figure is a median, and a ratio the median of ratios within
+one round. Prints a line a figure, `ratio NAME VALUE` or `figure NAME VALUE`. Ends with 1 where a measurement is broken (a run
+that failed, digests that differ between one process and two), never because the machine is slow, and with 77 where LIGGGHTS is
+not installed.
 """
 
 import argparse

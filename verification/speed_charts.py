@@ -11,10 +11,12 @@ PHASES = {"pairs": BLUE, "lists": PALE, "sort": GREY, "integrate": GREEN, "solid
 
 
 def speeds(figures: dict[str, float], file: Path) -> None:
-    """Particle-steps a second of MaPPM and of LIGGGHTS' SPH on one process and on two; figures of bench/speed.py."""
-    codes = {"": ("MaPPM, double", BLUE), "without_transport_": ("without transport velocity", PALE), "liggghts_": ("LIGGGHTS, SPH", GREY)}
+    """Particle-steps a second on one process and on two: MaPPM, also without transport velocity, and LIGGGHTS' SPH; figures of
+    bench/speed.py."""
+    codes = {"": ("MaPPM, double", BLUE), "without_transport_": ("MaPPM, no transport velocity", PALE),
+             "liggghts_": ("LIGGGHTS, SPH", GREY)}
     with figure_of(file, 7, 3.2) as axes:
-        for row, (name, _) in enumerate(FLUIDS.items()):
+        for row, name in enumerate(FLUIDS):
             for k, ranks in enumerate((1, 2)):
                 place = 2 * row + 0.9 * k
                 for side, (code, (words_of_code, color)) in zip((-0.26, 0.0, 0.26), codes.items(), strict=True):

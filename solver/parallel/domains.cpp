@@ -183,9 +183,9 @@ template <int D>
 Domains<D> make_domains(const Model<D>& model, int processes, const std::string& grid) {
   Vec<D, int> counts;
   if (grid.empty()) {
-    int longest = 0;
+    int longest = 0;  // of equal ones the slowest: its slabs hold whole planes of cells
     for (int axis = 1; axis < D; ++axis)
-      if (model.box[axis] > model.box[longest]) longest = axis;
+      if (model.box[axis] >= model.box[longest]) longest = axis;
     for (int axis = 0; axis < D; ++axis) counts[axis] = axis == longest ? processes : 1;
   } else {
     counts = parse_grid<D>(grid, processes);

@@ -47,8 +47,9 @@ class Domains {
   std::array<std::vector<double>, D> cuts_;
 };
 
-/// `grid`: "2x4" (domains along x, y ...), or empty for slabs along the longest side. Throws InputError for a grid
-/// that does not match the number of processes, or domains too small for rcut or for the solids (the paper's h > 2R).
+/// `grid`: "2x4" (domains along x, y ...), or empty for slabs along the longest side, of equal ones the last. Throws
+/// InputError for a grid that does not match the number of processes, or domains too small for rcut or for the solids
+/// (the paper's h > 2R).
 template <int D>
 Domains<D> make_domains(const Model<D>& model, int processes, const std::string& grid);
 

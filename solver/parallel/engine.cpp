@@ -1,7 +1,6 @@
 #include "parallel/engine.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "parallel/fluid_motion.hpp"

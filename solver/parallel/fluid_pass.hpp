@@ -56,7 +56,7 @@ class FluidPass {
   void sum_inner(const CellGrid<D>& grid) { sum_lists_of(inner, grid); }
   void sum_rest(FluidParticles<D>& fluid, const CellGrid<D>& grid);
   /// After a sum: the new state of the PP at this place, or of those that lie side by side from there on, as many as
-  /// there are lanes. Each PP that is not foreign must be given before the next sum.
+  /// there are lanes of the state. Each PP that is not foreign must be given before the next sum.
   template <class Real>
   MAPPM_INLINE void moved(std::uint32_t place, const Vec<D, Real>& x, const Vec<D, Real>& v, const Real& density) {
     if (!kept_.empty()) blocks_.lay(model_, numbers_, place, x, v, density);
@@ -73,7 +73,7 @@ class FluidPass {
   std::uint32_t gap(int plane) const { return blocks_.gap(plane); }
   /// Sums of the PP at this place.
   NeighbourSums<D> sums(std::uint32_t place) const { return numbers_.sums(blocks_.sums(place)); }
-  /// Sums of as many PPs from this place on as there are lanes, of whose number it must be a multiple.
+  /// Sums of as many PPs from this place on as there are lanes of the state, of whose number it must be a multiple.
   MAPPM_INLINE NeighbourSums<D, IntLanes> sums_of_lanes(std::uint32_t place) const {
     return numbers_.sums(blocks_.sums_of_lanes(place));
   }

@@ -195,7 +195,7 @@ class PairBlocks {
   bool shifts_ = false;                       // whether there are any
   std::vector<std::uint32_t> contributions_;  // that lists make to each block in one sum
   std::vector<std::uint32_t> starts_, gaps_;  // of each plane: its first index; its places less its indices
-  std::vector<Held> held_;                    // by each block
+  std::vector<Held> held_;                    // of each block
   Column<Block> blocks_;
 };
 
