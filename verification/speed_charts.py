@@ -28,7 +28,7 @@ def speeds(figures: dict[str, float], file: Path) -> None:
         axes.set_yticks([0, 0.9, 2, 2.9], [f"{words}, {count}" for words in FLUIDS.values() for count in ("one process", "two")])
         axes.invert_yaxis()
         axes.set_xlabel("million particle-steps per second")
-        axes.legend(frameon=False, fontsize=8)
+        axes.legend(frameon=False, fontsize=8, loc="lower right")
 
 
 def _over_processes(figures: dict[str, float], prefix: str, name: str) -> dict[int, float]:
