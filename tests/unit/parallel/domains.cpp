@@ -143,6 +143,8 @@ TEST(Domains, slabs_along_the_longest_side_are_the_default) {
   EXPECT_EQ(make_domains<2>(box_model<2>({{30.0, 10.0}}), 4, "").grid(), (Vec<2, int>{{4, 1}}));
   EXPECT_EQ(make_domains<2>(box_model<2>({{10.0, 30.0}}), 4, "").grid(), (Vec<2, int>{{1, 4}}));
   EXPECT_EQ(make_domains<3>(box_model<3>({{10.0, 11.0, 12.0}}), 3, "").grid(), (Vec<3, int>{{1, 1, 3}}));
+  EXPECT_EQ(make_domains<2>(box_model<2>({{10.0, 10.0}}), 2, "").grid(), (Vec<2, int>{{1, 2}}));
+  EXPECT_EQ(make_domains<3>(box_model<3>({{12.0, 12.0, 10.0}}), 3, "").grid(), (Vec<3, int>{{1, 3, 1}}));
   EXPECT_EQ(make_domains<3>(box_model<3>({{10.0, 11.0, 12.0}}), 12, "2x2x3").grid(), (Vec<3, int>{{2, 2, 3}}));
 }
 
