@@ -271,9 +271,7 @@ void ParallelEngine<D>::move_fluid() {
 #pragma omp critical
           all.add(motion);
         }
-        FluidMotion<D> entered(model_, state_.step, halo_->region(), range_error_);
-        for (const std::uint32_t i : residents_->near_outside()) entered.move(pass, state_.fluid, i, pass.place(i), 1);
-        all.add(entered);
+        for (const std::uint32_t i : residents_->near_outside()) all.move(pass, state_.fluid, i, pass.place(i), 1);
       },
       pass_);
   residents_->moved(all.farthest());

@@ -124,7 +124,7 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
         const auto is_wide = [&](const NearBlock& other) { return wide[other.block] != 0 || wide[place / lanes] != 0; };
         kept_[parts * band + (alone ? inner : rest)].add(
             place, near, [&](const NearBlock& other) { return all || reaches_inside[other.block] != 0; }, is_wide,
-            [&](const NearBlock& other) { return lanes_near(fluid, grid, place, row[D - 1], other); });
+            [&](const NearBlock& other) { return lanes_near(fluid, place, other.block); });
       });
     });
     for (const Part part : {inner, rest}) blocks_.expect(kept_[parts * band + part].blocks());
@@ -155,13 +155,12 @@ void FluidPass<D, Numbers>::for_each_block_list(const FluidParticles<D>& fluid, 
     }
     search.near.find(grid, box);
     std::vector<NearBlock>& candidates = search.candidates;
-    candidates.assign(1, {own, row[D - 1]});
+    candidates.assign(1, {own});
     std::uint32_t next = own + 1;  // a block on the border of two rows is found in both
     for (std::size_t n = 0; n < search.near.count(); ++n) {
       const auto range = search.near.range(grid, n);
       if (range.end <= range.first) continue;
-      for (next = std::max(next, range.first / lanes); next * lanes < range.end; ++next)
-        candidates.push_back({next, search.near.plane(n)});
+      for (next = std::max(next, range.first / lanes); next * lanes < range.end; ++next) candidates.push_back({next});
     }
     search.measured += candidates.size() * lanes * lanes;
     if (search.found.size() < candidates.size() * lanes) search.found.resize(candidates.size() * lanes);
@@ -204,15 +203,15 @@ MAPPM_INLINE void FluidPass<D, Numbers>::measure_all(std::uint32_t own, std::uin
   }
 }
 
-/// The lanes of a block that are PPs near a PP of this plane, and do not only seem so: one a bit.
+/// The lanes of a block that are PPs near the one at a place, and do not only seem so: one a bit.
 template <int D, class Numbers>
-std::uint16_t FluidPass<D, Numbers>::lanes_near(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
-                                                std::uint32_t place, int plane, const NearBlock& other) const {
-  const Vec<D, double> x = fluid.position(place - blocks_.gap(plane));
-  const std::uint32_t first = other.block * lanes - blocks_.gap(other.plane);
+std::uint16_t FluidPass<D, Numbers>::lanes_near(const FluidParticles<D>& fluid, std::uint32_t place,
+                                                std::uint32_t block) const {
+  const Vec<D, double> x = fluid.position(blocks_.held(place / lanes).first + place % lanes);
+  const auto& held = blocks_.held(block);
   unsigned near = 0;
-  for (std::uint32_t lane = 0; lane < std::min(lanes, grid.plane_start(other.plane + 1) - first); ++lane) {
-    const Vec<D, double> d = separation(model_.pair, fluid.position(first + lane) - x);
+  for (std::uint32_t lane = 0; lane < held.count; ++lane) {
+    const Vec<D, double> d = separation(model_.pair, fluid.position(held.first + lane) - x);
     bool apart = true;
     for (int axis = 0; axis < D; ++axis) apart = apart && std::fabs(d[axis]) <= Numbers::largest_extent;
     near |= apart ? 1u << lane : 0u;

@@ -56,7 +56,7 @@ class NearRows {
         chosen =
             chosen && (inner ? grid.is_inner(axis, other[axis]) : other[axis] >= 0 && other[axis] < grid.count(axis));
       if (!chosen) continue;
-      rows_.push_back({grid.row(other), other[D - 1], blocks.gap(other[D - 1])});
+      rows_.push_back({grid.row(other), blocks.gap(other[D - 1])});
       for (int axis = 1; axis < D; ++axis) borders_[axis].push_back(offset[axis] * grid.width(axis));
     }
     const std::size_t padded = (rows_.size() + lane_count - 1) / lane_count * lane_count;
@@ -101,14 +101,11 @@ class NearRows {
     return {grid.start(row.cells + static_cast<std::size_t>(low_[n])) + row.gap,
             grid.start(row.cells + static_cast<std::size_t>(high_[n] + 1)) + row.gap};
   }
-  /// In which plane of cells a row lies.
-  int plane(std::size_t n) const { return rows_[n].plane; }
 
  private:
   static constexpr double rounding = 1e-6;  // far more than that of a place, in cells and in reaches
   struct Row {
     std::size_t cells;  // its first one
-    int plane;
     std::uint32_t gap;  // place of a particle less its index
   };
   Vec<D, int> row_;
