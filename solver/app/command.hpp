@@ -12,6 +12,7 @@
 #include "app/options.hpp"
 #include "base/error.hpp"
 #include "base/group.hpp"
+#include "base/numerics_version.hpp"
 #include "build_info.hpp"
 
 namespace mappm {
@@ -30,7 +31,8 @@ int run_command(int argc, char** argv, const Group& group, const std::string& pr
                 Run&& run) {
   CLI::App app("Macro-scale pseudo-particle modelling of particle-fluid systems", program);
   app.set_version_flag(
-      "--version", fmt::format("{} {} ({}), {}", program, build_info::version, build_info::commit, instruction_set));
+      "--version", fmt::format("{} {} ({}), numerics {}, {}", program, build_info::version, build_info::commit, numerics_version,
+                               instruction_set));
   app.require_subcommand(1);
   CLI::App& command = *app.add_subcommand("run", "run a scene");
   RunOptions options;

@@ -86,7 +86,7 @@ class RunLoop {
             fmt::format("resume with: {}{} run {}{} --resume {}", ranks > 1 ? fmt::format("mpirun -np {} ", ranks) : "",
                         setup_.program, setup_.options.repeated(), setup_.program_options, shell_word(saved_.string()));
       }
-      remember(measure(setup_.model, engine_.state(), setup_.group));
+      remember(measure(setup_.model, engine_.sample(), setup_.group));
       write_record(state, message);
     } catch (const InputError& error) {
       write_record_of_failure("input error", error.what());
@@ -113,7 +113,7 @@ class RunLoop {
   bool advance();
   bool outputs_due() const;
   void write_outputs();
-  void sample();
+  void sample(const Sample<D>& now);
   void save();
   void remember(const Totals<D>& totals);
   void write_record(const std::string& state, const std::string& message);
@@ -161,7 +161,7 @@ void RunLoop<D, E>::begin() {
   series_.emplace(folder_, model, units, group, start.resumed_step);
   if (scene.output.solids) solid_series_.emplace(folder_, model, units, group, start.resumed_step);
   if (faces) face_series_.emplace(folder_, group, start.resumed_step);
-  remember(measure(model, engine_.state(), group));
+  remember(measure(model, engine_.sample(), group));
   write_record("running", "");
   say_on_first([&] {
     for (const std::string& warning : setup_.warnings) fmt::print(stderr, "warning: {}\n", warning);
@@ -228,10 +228,12 @@ requires Engine<E, D>
 void RunLoop<D, E>::write_outputs() {
   const OutputScene& output = setup_.scene.output;
   output_.time([&] {
+    const bool snapshot_due = falls_on(output.snapshot) || step() == last_step_;
+    if (!snapshot_due && !falls_on(output.sample)) return;
+    const Sample<D> now = engine_.sample();
     // The snapshot stands first: it shows forces since the sample before.
-    if (falls_on(output.snapshot) || step() == last_step_)
-      write_snapshot(folder_ / "snapshots", setup_.model, engine_.state(), sampled_step_, setup_.group);
-    if (falls_on(output.sample)) sample();
+    if (snapshot_due) write_snapshot(folder_ / "snapshots", setup_.model, now, sampled_step_, setup_.group);
+    if (falls_on(output.sample)) sample(now);
   });
   const bool checkpoint_due = falls_on(output.checkpoint) || (output.checkpoint != 0 && step() == last_step_);
   if (checkpoint_due && step() != first_step_) save();
@@ -239,9 +241,9 @@ void RunLoop<D, E>::write_outputs() {
 
 template <int D, class E>
 requires Engine<E, D>
-void RunLoop<D, E>::sample() {
-  State<D>& state = engine_.state();
-  const Totals<D> totals = measure(setup_.model, state, setup_.group);
+void RunLoop<D, E>::sample(const Sample<D>& now) {
+  State<D>& state = now.state;
+  const Totals<D> totals = measure(setup_.model, now, setup_.group);
   series_->add(totals, state.start_momentum, sampled_step_);
   if (solid_series_.has_value()) solid_series_->add(state, sampled_step_);
   if constexpr (requires { engine_.faces(); })

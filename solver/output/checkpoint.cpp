@@ -1,10 +1,13 @@
 #include "output/checkpoint.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/numerics_version.hpp"
 #include "output/file_seal.hpp"
 #include "output/hdf5_file.hpp"
 #include "output/scene_identity.hpp"
@@ -17,19 +20,17 @@ namespace mappm {
 namespace {
 
 constexpr const char* format_name = "MaPPM checkpoint";
-constexpr std::uint64_t format_version = 2;
+constexpr std::uint64_t format_version = 3;
 constexpr std::uint64_t slice_rows = 1 << 18;        // PPs read at a time
 constexpr std::uint64_t solid_slice_rows = 1 << 10;  // solids read at a time
 
 /// Names of the PP fields, and the quantum that their counts are of.
 template <int D>
 std::string field_name(int field) {
-  if (field == 2 * D) return "/fluid/density";
   return std::string("/fluid/") + (field < D ? "x_" : "v_") + "xyz"[field % D];
 }
 template <int D>
 double field_quantum(int field) {
-  if (field == 2 * D) return density_quantum;
   return field < D ? 1.0 : velocity_quantum;
 }
 
@@ -87,16 +88,12 @@ std::array<std::uint64_t, 2> hashes(const State<D>& state, const Vec<D, Int128>&
 template <int D>
 void write_solids(const std::vector<Solid<D>>& solids, Hdf5Writer& file) {
   std::vector<std::uint64_t> words, contacts;
-  std::vector<std::int64_t> densities;
   for (const Solid<D>& solid : solids) {
     append_words(solid, words);
-    const std::vector<std::int64_t> own = counts(solid.density, density_quantum);
-    densities.insert(densities.end(), own.begin(), own.end());
     for (const Contact<D>& contact : solid.contacts) visit_contact_fields(contact, WordWriter(contacts));
   }
   file.make_group("/solids");
   file.rows("/solids/words", words, solid_word_count<D>());
-  file.rows("/solids/density", densities, 0);
   file.rows("/solids/contacts", contacts, contact_word_count<D>());
 }
 
@@ -108,6 +105,10 @@ void check_header(const Hdf5Reader& file, const std::string& path, const std::st
   if (version != format_version)
     refuse(path, "has version " + std::to_string(version) + " of the checkpoint format, this program reads version " +
                      std::to_string(format_version) + "; resume with the program that wrote it");
+  if (const std::uint64_t numerics = file.number_attribute("/", "numerics"); numerics != numerics_version)
+    refuse(path, fmt::format("was computed by numerics version {}, this program has {}: going on would give neither's "
+                             "results; resume with the program that wrote it, or start anew",
+                             numerics, numerics_version));
   const auto letters = file.rows<std::uint8_t>("/scene", 0, file.row_count("/scene"), 0);
   const std::string text(letters.begin(), letters.end());
   if (file.number_attribute("/", "scene_hash") != text_hash(text)) refuse(path, "is damaged: its scene");
@@ -141,12 +142,7 @@ void read_fluid(const Hdf5Reader& file, const Region<D>& region, FluidParticles<
 /// Sizes in a row of words are trusted only as far as the model agrees.
 template <int D>
 Solid<D> checked_solid(const std::uint64_t* words, const Model<D>& model, const std::string& path) {
-  const std::uint64_t densities = words[solid_word_count<D>() - 2];
-  const std::uint64_t shape = words[solid_shape_word];
-  if (shape >= model.shapes.size() || densities != model.shapes[shape].frozen.size())
-    refuse(path,
-           "its solids have other frozen particles than this program gives them; resume with the program that "
-           "wrote it");
+  if (words[solid_shape_word] >= model.shapes.size()) refuse(path, "is damaged: its solids have other shapes");
   return solid_of_words<D>(words);
 }
 
@@ -156,25 +152,20 @@ void read_solids(const Hdf5Reader& file, const std::string& path, const Model<D>
   const std::size_t width = solid_word_count<D>(), contact_width = contact_word_count<D>();
   const std::uint64_t all = file.row_count("/solids/words");
   const std::uint64_t all_contacts = file.row_count("/solids/contacts");
-  std::uint64_t next_density = 0, next_contact = 0;
+  std::uint64_t next_contact = 0;
   for (std::uint64_t first = 0; first < all; first += solid_slice_rows) {
     const std::uint64_t count = std::min(solid_slice_rows, all - first);
     const std::vector<std::uint64_t> words = file.rows<std::uint64_t>("/solids/words", first, count, width);
     for (std::uint64_t i = 0; i < count; ++i) {
       const std::uint64_t contacts = words[(i + 1) * width - 1];
       if (contacts > all_contacts) refuse(path, "is damaged");
-      const std::uint64_t solid_shape = words[i * width + solid_shape_word];
       Solid<D> solid = checked_solid<D>(&words[i * width], model, path);
       if (region.contains(solid.x)) {
-        const auto density = file.rows<std::int64_t>("/solids/density", next_density, solid.density.size(), 0);
-        for (std::size_t k = 0; k < density.size(); ++k)
-          solid.density[k] = static_cast<double>(density[k]) * density_quantum;
         const auto rows = file.rows<std::uint64_t>("/solids/contacts", next_contact, contacts, contact_width);
         for (std::size_t k = 0; k < contacts; ++k)
           visit_contact_fields(solid.contacts[k], WordReader(&rows[k * contact_width]));
         solids.push_back(std::move(solid));
       }
-      next_density += model.shapes[solid_shape].frozen.size();
       next_contact += contacts;
     }
   }
@@ -194,6 +185,7 @@ void write_checkpoint(const std::string& path, const std::string& scene_text, co
   Hdf5Writer file(path, group);
   file.text_attribute("/", "format", format_name);
   file.attribute("/", "version", number(format_version));
+  file.attribute("/", "numerics", number(numerics_version));
   file.attribute("/", "dimension", number(D));
   file.rows(
       "/scene",

@@ -8,6 +8,7 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "base/numerics_version.hpp"
 #include "build_info.hpp"
 #include "output/durable_file.hpp"
 
@@ -52,6 +53,7 @@ std::string run_record_text(const RunRecord& record) {
   nlohmann::ordered_json json;
   json["program"] = record.program;
   json["version"] = build_info::version;
+  json["numerics_version"] = numerics_version;
   json["commit"] = build_info::commit;
   json["compiler"] = build_info::compiler;
   json["flags"] = build_info::flags;

@@ -61,32 +61,26 @@ void add_point(const Model<D>& model, const Vec<D, double>& x, const Vec<D, doub
 }
 
 template <int D>
-FluidPoints fluid_points(const Model<D>& model, const State<D>& state) {
+FluidPoints fluid_points(const Model<D>& model, const Sample<D>& sample) {
+  const State<D>& state = sample.state;
   FluidPoints points;
-  std::size_t count = state.fluid.size();
-  for (const Solid<D>& solid : state.solids) count += solid.density.size();
-  points.reserve(count);
+  points.reserve(state.fluid.size() + sample.density.frozen.size());
   for (std::size_t i = 0; i < state.fluid.size(); ++i) {
     Vec<D, double> x, v;
     for (int axis = 0; axis < D; ++axis) {
       x[axis] = state.fluid.x(axis)[i];
       v[axis] = state.fluid.v(axis)[i];
     }
-    add_point(model, x, v, state.fluid.density()[i], points);
+    add_point(model, x, v, sample.density.fluid[i], points);
     points.id.push_back(static_cast<std::int64_t>(state.fluid.id[i]));
     points.solid.push_back(no_solid);
     points.kind.push_back(fluid_kind);
   }
-  for (const Solid<D>& solid : state.solids) {
-    const Shape<D>& shape = model.shapes[solid.shape];
-    const RigidVelocity<D> velocity = rigid_velocity(solid, shape);
-    for (std::size_t k = 0; k < shape.frozen.size(); ++k) {
-      const auto placed = place(solid, velocity, shape.frozen[k], model.pair.length);
-      add_point(model, placed.x, placed.v, solid.density[k], points);
-      points.id.push_back(static_cast<std::int64_t>(k));
-      points.solid.push_back(static_cast<std::int64_t>(solid.id));
-      points.kind.push_back(frozen_kind);
-    }
+  for (const FrozenPoint<D>& fp : sample.density.frozen) {
+    add_point(model, fp.x, fp.v, fp.density, points);
+    points.id.push_back(static_cast<std::int64_t>(fp.index));
+    points.solid.push_back(static_cast<std::int64_t>(fp.solid));
+    points.kind.push_back(frozen_kind);
   }
   return points;
 }
@@ -188,14 +182,15 @@ void write_points(const std::filesystem::path& path, const Group& group, Fill&& 
 }  // namespace
 
 template <int D>
-void write_snapshot(const std::filesystem::path& folder, const Model<D>& model, const State<D>& state,
+void write_snapshot(const std::filesystem::path& folder, const Model<D>& model, const Sample<D>& sample,
                     std::uint64_t sampled_step, const Group& group) {
+  const State<D>& state = sample.state;
   on_first(group, [&] { make_folder(folder); });
   const double time = static_cast<double>(state.step) * (model.dt * model.units.time());
   const std::string ending = fmt::format("_{:09}.vtkhdf", state.step);
   const std::filesystem::path fluid_path = folder / ("fluid" + ending);
   write_points(fluid_path, group, [&] {
-    const FluidPoints points = fluid_points(model, state);
+    const FluidPoints points = fluid_points(model, sample);
     PointFile file(fluid_path, points.place, time, state.step, group);
     file.point_data("velocity", points.velocity, 3);
     file.point_data("density", points.density, 0);
@@ -222,9 +217,9 @@ void write_snapshot(const std::filesystem::path& folder, const Model<D>& model, 
   });
 }
 
-template void write_snapshot<2>(const std::filesystem::path&, const Model<2>&, const State<2>&, std::uint64_t,
+template void write_snapshot<2>(const std::filesystem::path&, const Model<2>&, const Sample<2>&, std::uint64_t,
                                 const Group&);
-template void write_snapshot<3>(const std::filesystem::path&, const Model<3>&, const State<3>&, std::uint64_t,
+template void write_snapshot<3>(const std::filesystem::path&, const Model<3>&, const Sample<3>&, std::uint64_t,
                                 const Group&);
 
 }  // namespace mappm

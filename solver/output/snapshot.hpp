@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "base/group.hpp"
+#include "particles/density_field.hpp"
 #include "particles/model.hpp"
-#include "particles/state.hpp"
 
 namespace mappm {
 
@@ -20,7 +20,7 @@ namespace mappm {
 ///         its SP, drag on its SP (mean since the sample before, of step `sampled_step`)
 /// both:   field data TimeValue and step
 template <int D>
-void write_snapshot(const std::filesystem::path& folder, const Model<D>& model, const State<D>& state,
+void write_snapshot(const std::filesystem::path& folder, const Model<D>& model, const Sample<D>& sample,
                     std::uint64_t sampled_step, const Group& group);
 
 }  // namespace mappm

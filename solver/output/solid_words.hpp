@@ -76,25 +76,22 @@ class WordReader {
   const std::uint64_t* from_;
 };
 
-/// Words of the fixed-size part, and the numbers of its FPs and contacts, whose values follow elsewhere.
+/// Words of the fixed-size part, and the number of its contacts, whose values follow elsewhere.
 template <int D>
 void append_words(const Solid<D>& solid, std::vector<std::uint64_t>& to) {
   WordWriter writer(to);
   visit_fields(solid, writer);
-  writer(static_cast<std::uint64_t>(solid.density.size()));
   writer(static_cast<std::uint64_t>(solid.contacts.size()));
 }
 
-/// The solid of such a row; `density` and `contacts` get their sizes, not their values.
+/// The solid of such a row; `contacts` get their number, not their values.
 template <int D>
 Solid<D> solid_of_words(const std::uint64_t* words) {
   Solid<D> solid;
   WordReader reader(words);
   visit_fields(solid, reader);
-  std::uint64_t densities = 0, contacts = 0;
-  reader(densities);
+  std::uint64_t contacts = 0;
   reader(contacts);
-  solid.density.resize(densities);
   solid.contacts.resize(contacts);
   return solid;
 }

@@ -50,7 +50,8 @@ AngularVec<D, Int128> orbital(const Model<D>& model, const Vec<D, double>& x, co
 }
 
 template <int D>
-void add_fluid(const Model<D>& model, const FluidParticles<D>& fluid, Totals<D>& totals) {
+void add_fluid(const Model<D>& model, const FluidParticles<D>& fluid, const std::vector<double>& density,
+               Totals<D>& totals) {
   totals.fluid_count = static_cast<Int128>(fluid.size());
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     Vec<D, double> x, v;
@@ -60,17 +61,17 @@ void add_fluid(const Model<D>& model, const FluidParticles<D>& fluid, Totals<D>&
       totals.fluid_momentum[axis] += static_cast<std::int64_t>(v[axis] / velocity_quantum);
     }
     totals.fluid_energy += to_fixed_wide(0.5 * dot(v, v) / energy_quantum);
-    const double compression = internal_energy(fluid.density()[i], model.rest_density, 1.0, model.background);
+    const double compression = internal_energy(density[i], model.rest_density, 1.0, model.background);
     totals.internal_energy += to_fixed_wide(compression / energy_quantum);
     totals.angular_momentum += orbital(model, x, v);
-    totals.lowest_density = std::fmin(totals.lowest_density, fluid.density()[i]);
-    totals.highest_density = std::fmax(totals.highest_density, fluid.density()[i]);
+    totals.lowest_density = std::fmin(totals.lowest_density, density[i]);
+    totals.highest_density = std::fmax(totals.highest_density, density[i]);
   }
 }
 
 template <int D>
 void add_solid(const Model<D>& model, const Solid<D>& solid, const Shape<D>& shape, Totals<D>& totals) {
-  totals.frozen_count += static_cast<Int128>(solid.density.size());
+  totals.frozen_count += static_cast<Int128>(shape.frozen.size());
   const Vec<D, Int128> impulse = solid.fluid_impulse - solid.sampled_impulse;
   if (is_wall_piece(shape)) {
     totals.wall_impulse += impulse;
@@ -97,11 +98,12 @@ void add_solid(const Model<D>& model, const Solid<D>& solid, const Shape<D>& sha
 }  // namespace
 
 template <int D>
-Totals<D> measure(const Model<D>& model, const State<D>& state, const Group& group) {
+Totals<D> measure(const Model<D>& model, const Sample<D>& sample, const Group& group) {
+  const State<D>& state = sample.state;
   Totals<D> totals;
   totals.lowest_density = std::numeric_limits<double>::infinity();
   totals.highest_density = -std::numeric_limits<double>::infinity();
-  add_fluid(model, state.fluid, totals);
+  add_fluid(model, state.fluid, sample.density.fluid, totals);
   for (const Solid<D>& solid : state.solids) add_solid(model, solid, model.shapes[solid.shape], totals);
   totals.momentum = momentum_share(state);
   totals.outside_impulse = state.outside_impulse;
@@ -124,7 +126,7 @@ Totals<D> measure(const Model<D>& model, const State<D>& state, const Group& gro
 
 std::string digest_text(std::uint64_t digest) { return fmt::format("{:016x}", digest); }
 
-template Totals<2> measure<2>(const Model<2>&, const State<2>&, const Group&);
-template Totals<3> measure<3>(const Model<3>&, const State<3>&, const Group&);
+template Totals<2> measure<2>(const Model<2>&, const Sample<2>&, const Group&);
+template Totals<3> measure<3>(const Model<3>&, const Sample<3>&, const Group&);
 
 }  // namespace mappm

@@ -7,7 +7,7 @@
 #include "base/group.hpp"
 #include "base/vec.hpp"
 #include "particles/model.hpp"
-#include "particles/state.hpp"
+#include "particles/density_field.hpp"
 
 namespace mappm {
 
@@ -41,15 +41,9 @@ struct Totals {
   std::uint64_t particles() const { return static_cast<std::uint64_t>(fluid_count + frozen_count); }
 };
 
-/// A wall piece has FPs but no ball.
-template <int D>
-bool is_wall_piece(const Shape<D>& shape) {
-  return shape.balls.empty();
-}
-
 /// Collective: one sum and one minimum over the group.
 template <int D>
-Totals<D> measure(const Model<D>& model, const State<D>& state, const Group& group);
+Totals<D> measure(const Model<D>& model, const Sample<D>& sample, const Group& group);
 
 /// Momentum now, less that at the start, less the impulse from outside: zero in every run, as an equality of integers.
 template <int D>

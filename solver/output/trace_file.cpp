@@ -25,7 +25,7 @@ Columns columns(const StepTrace<D>& trace, const PartnerTrace<D>& partner, bool 
               partner.frozen ? fmt::format("{}:{}", partner.id, partner.index) : fmt::format("{}", partner.id));
   columns.add("impulse", "", partner.given.impulse);
   if (transport) columns.add("shift", "", partner.given.shift);
-  columns.add("density", "", partner.given.density);
+  columns.add("density", "", partner.density);
   return columns;
 }
 
@@ -36,7 +36,7 @@ std::string trace_text(const StepTrace<D>& trace, bool transport) {
   std::vector<PartnerTrace<D>> partners = trace.partners;
   // Two entries of one partner are a defect, but of a known order all the same.
   const auto key = [](const PartnerTrace<D>& partner) {
-    return std::tuple(partner.frozen, partner.id, partner.index, partner.given.density, partner.given.impulse[0]);
+    return std::tuple(partner.frozen, partner.id, partner.index, partner.density, partner.given.impulse[0]);
   };
   std::sort(partners.begin(), partners.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
   std::string text = columns<D>(trace, {}, transport).header() + '\n';

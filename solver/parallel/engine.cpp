@@ -97,44 +97,10 @@ void ParallelEngine<D>::step() {
   if (options_.rebalance > 0 && state_.step > 0 && state_.step % options_.rebalance == 0) rebalance();
   watch_.start();
   if (traced_particle_.has_value() || faces_due()) state();  // what explains the pairs wants them in their cells
-  halo_->begin_exchange(state_, *residents_, watch_);
-  if (residents_->staying()) {  // what needs no message, while they are on their way
-    std::visit([&](auto& pass) { pass.sum_inner(grid_); }, pass_);
-    watch_.end(Phase::pairs);
-  }
-  const bool stay = halo_->end_exchange(state_, *residents_, copies_, watch_);
-  const bool single_step = !stay && !residents_->pays();
-  place_solids();
-  watch_.end(Phase::solids);
-  if (model_.terms.fluid) {
-    if (!stay) {
-      grid_.sort(state_.fluid);
-      find_rows();
-      residents_->settle(state_.fluid, single_step);
-      ++orderings_;
-      watch_.end(Phase::sort);
-    }
-    if (single_step) {
-      std::visit([&](auto& pass) { pass.sum_once(state_.fluid, grid_); }, pass_);
-    } else {
-      std::visit(
-          [&](auto& pass) {
-            if (!stay)
-              pass.list(state_.fluid, grid_, residents_->may_own(), 1.0 + skin, residents_->foreign(),
-                        halo_->traffic().neighbours > 0);
-            watch_.end(Phase::lists);
-            if (!stay) pass.sum_inner(grid_);
-            pass.sum_rest(state_.fluid, grid_);
-          },
-          pass_);
-    }
-    watch_.end(Phase::pairs);
-    std::visit([&](auto& pass) { pass.add_frozen(grid_, solids_.frozen, frozen_sums_); }, pass_);
-    watch_.end(Phase::frozen_pairs);
-  }
+  sum_densities(false);
+  if (model_.terms.fluid) sum_forces();
   explain_pairs();
   if (model_.terms.solids) {
-    if (model_.terms.fluid) densities_.add(solids_, *levels_, frozen_sums_);
     std::vector<HomeReport<D>> reports = collect_reports();
     watch_.end(Phase::solids);
     reports = halo_->send_home(copies_, std::move(reports));
@@ -145,6 +111,102 @@ void ParallelEngine<D>::step() {
   move_fluid();
   ++state_.step;
   watch_.end(Phase::integrate);
+}
+
+/// Copies from the neighbours, and the densities of what lies in the region. `alone`: in no step, for output.
+template <int D>
+void ParallelEngine<D>::sum_densities(bool alone) {
+  halo_->begin_exchange(state_, *residents_, watch_);
+  if (residents_->staying()) {  // what needs no message, while they are on their way
+    std::visit([&](auto& pass) { pass.sum_inner_densities(grid_); }, pass_);
+    watch_.end(Phase::densities);
+  }
+  const bool stay = halo_->end_exchange(state_, *residents_, copies_, watch_);
+  const bool single_step = alone || (!stay && !residents_->pays());
+  place_solids();
+  watch_.end(Phase::solids);
+  if (!model_.terms.fluid) return;
+  if (!stay) order_fluid(single_step);
+  std::visit(
+      [&](auto& pass) {
+        if (!stay) {
+          pass.list(state_.fluid, grid_, residents_->may_own(), single_step ? 1.0 : 1.0 + skin, residents_->foreign(),
+                    halo_->traffic().neighbours > 0);
+          watch_.end(Phase::lists);
+          pass.sum_inner_densities(grid_);
+        }
+        pass.sum_rest_densities(state_.fluid, grid_);
+        watch_.end(Phase::densities);
+        pass.add_frozen_densities(grid_, solids_.frozen, frozen_density_sums_);
+        watch_.end(Phase::frozen_pairs);
+      },
+      pass_);
+  if (model_.terms.solids) densities_.add(solids_, *levels_, frozen_density_sums_);
+  watch_.end(Phase::solids);
+  close_densities();
+  watch_.end(Phase::densities);
+}
+
+template <int D>
+void ParallelEngine<D>::order_fluid(bool single_step) {
+  grid_.sort(state_.fluid);
+  find_rows();
+  residents_->settle(state_.fluid, single_step);
+  ++orderings_;
+  watch_.end(Phase::sort);
+}
+
+/// Those in the region are known now.
+template <int D>
+void ParallelEngine<D>::close_densities() {
+  density_.resize(state_.fluid.size());
+  const std::vector<std::uint32_t> others = residents_->others();
+  const auto wrong = std::visit([&](auto& pass) { return pass.close_densities(others, density_); }, pass_);
+  if (wrong)
+    note(density_message(state_.step, particle_text(state_.fluid.id[*wrong]), density_[*wrong] / model_.rest_density));
+  for (std::size_t k = 0; k < solids_.frozen.size(); ++k) {
+    FrozenInStep<D>& fp = solids_.frozen[k];
+    if (!halo_->region().contains(fp.place.x)) continue;
+    set_density(model_, fp, summed_density(frozen_density_sums_[k], fp.own_density));
+    if (!is_in_range(fp.density, model_.rest_density))
+      note(density_message(state_.step, frozen_text(solids_.bodies[fp.solid].solid->id, fp.index),
+                           fp.density / model_.rest_density));
+  }
+}
+
+/// Densities of ghosts, and what needs none of them while they are on their way.
+template <int D>
+void ParallelEngine<D>::sum_forces() {
+  halo_->begin_densities(state_.fluid, *residents_, density_, solids_);
+  watch_.end(Phase::exchange);
+  std::visit([&](auto& pass) { pass.sum_inner(grid_); }, pass_);
+  watch_.end(Phase::pairs);
+  halo_->end_densities(state_.fluid, *residents_, density_, solids_);
+  watch_.end(Phase::exchange);
+  std::visit(
+      [&](auto& pass) {
+        pass.take_densities(density_);
+        pass.sum_rest(grid_);
+        watch_.end(Phase::pairs);
+        pass.add_frozen(grid_, solids_.frozen, frozen_sums_);
+        watch_.end(Phase::frozen_pairs);
+      },
+      pass_);
+}
+
+/// As the next step will see them.
+template <int D>
+Sample<D> ParallelEngine<D>::sample() {
+  const Stopwatch watch = watch_;
+  state();
+  sum_densities(true);
+  DensityField<D> field;
+  for (std::size_t i = 0; i < state_.fluid.size(); ++i)
+    if (halo_->region().contains(state_.fluid.position(i))) field.fluid.push_back(density_[i]);
+  for (const FrozenInStep<D>& fp : solids_.frozen)
+    if (halo_->region().contains(fp.place.x)) field.frozen.push_back(point_of(fp, *solids_.bodies[fp.solid].solid));
+  watch_ = watch;
+  return {state(), std::move(field)};
 }
 
 template <int D>
@@ -169,7 +231,7 @@ void ParallelEngine<D>::explain_pairs() {
   faces_.clear();
   if (faces_due()) {
     const FaceLedger<D> ledger(model_, domains_, halo_->region(), grid_);
-    faces_ = ledger.faces(state_.fluid, solids_.frozen);
+    faces_ = ledger.faces(state_.fluid, density_, solids_.frozen);
     faces_.push_back({all_partners, ledger.received(state_.fluid, pass_, solids_.frozen, frozen_sums_)});
   }
   trace_.reset();
@@ -194,15 +256,12 @@ std::vector<HomeReport<D>> ParallelEngine<D>::collect_reports() {
   for (std::size_t k = 0; k < solids_.frozen.size(); ++k) {
     const FrozenInStep<D>& fp = solids_.frozen[k];
     if (!halo_->region().contains(fp.place.x)) continue;
-    const double density = frozen_density(fp, frozen_sums_[k].density);
     if (fp.solid < owned) {
       add_frozen_load(fp, frozen_sums_[k].impulse, loads_[fp.solid].fluid);
-      state_.solids[fp.solid].density[fp.index] = density;
     } else {
       HomeReport<D>& report = reports[fp.solid - owned];
       add_frozen_load(fp, frozen_sums_[k].impulse, report.fluid);
-      report.index.push_back(fp.index);
-      report.density.push_back(density);
+      report.any = true;
     }
   }
   return reports;
@@ -216,7 +275,6 @@ void ParallelEngine<D>::move_solids(const std::vector<HomeReport<D>>& from_other
     SolidImpulse<D>& fluid = loads_[static_cast<std::size_t>(home - state_.solids.begin())].fluid;
     fluid.linear += report.fluid.linear;
     fluid.angular += report.fluid.angular;
-    for (std::size_t k = 0; k < report.index.size(); ++k) home->density[report.index[k]] = report.density[k];
   }
   if (model_.terms.contact)
     for (std::size_t a = 0; a < state_.solids.size(); ++a) {
@@ -229,9 +287,7 @@ void ParallelEngine<D>::move_solids(const std::vector<HomeReport<D>>& from_other
       add_face_contacts(model_, one, loads_[a]);
     }
   for (std::size_t a = 0; a < state_.solids.size(); ++a) {
-    const std::string fault =
-        finish_step(model_, state_.step, state_.solids[a], std::move(loads_[a]), state_.outside_impulse);
-    if (range_error_.empty()) range_error_ = fault;
+    note(finish_step(model_, state_.step, state_.solids[a], std::move(loads_[a]), state_.outside_impulse));
   }
 }
 

@@ -12,6 +12,7 @@
 #include "parallel/fluid_pass.hpp"
 #include "parallel/frozen_densities.hpp"
 #include "parallel/halo.hpp"
+#include "parallel/placed_solids.hpp"
 #include "parallel/residents.hpp"
 #include "parallel/stopwatch.hpp"
 #include "particles/cell_levels.hpp"
@@ -35,6 +36,7 @@ class ParallelEngine {
   void step();
   std::uint64_t present_step() const { return state_.step; }
   State<D>& state();
+  Sample<D> sample();
   const std::string& range_error() const { return range_error_; }
   PhaseSeconds phase_seconds() const { return watch_.seconds(); }
   Traffic traffic() const;
@@ -54,7 +56,14 @@ class ParallelEngine {
  private:
   void start_domains();
   bool faces_due() const { return options_.faces > 0 && (state_.step + 1) % options_.faces == 0; }
+  void sum_densities(bool alone);
   void place_solids();
+  void order_fluid(bool single_step);
+  void close_densities();
+  void sum_forces();
+  void note(const std::string& fault) {
+    if (range_error_.empty()) range_error_ = fault;
+  }
   void explain_pairs();
   void find_rows();
   void move_fluid();
@@ -83,6 +92,8 @@ class ParallelEngine {
   // Of the present step:
   std::vector<Solid<D>> copies_;
   PlacedSolids<D> solids_;  // owned, then copies
+  Column<double> density_;  // of the PPs
+  std::vector<std::int64_t> frozen_density_sums_;
   std::vector<NeighbourSums<D>> frozen_sums_;
   std::vector<SolidLoad<D>> loads_;  // of owned solids
 

@@ -8,13 +8,14 @@ namespace mappm {
 namespace {
 
 template <int D>
-PairPoint<D> point_of(const Model<D>& model, const FluidParticles<D>& fluid, std::size_t i) {
+PairPoint<D> point_of(const Model<D>& model, const FluidParticles<D>& fluid, std::span<const double> density,
+                      std::size_t i) {
   PairPoint<D> point;
   for (int axis = 0; axis < D; ++axis) {
     point.x[axis] = fluid.x(axis)[i];
     point.v[axis] = fluid.v(axis)[i];
   }
-  point.volume = volume_terms(fluid.density()[i], model.rest_density, 1.0, model.background);
+  point.volume = volume_terms(density[i], model.rest_density, 1.0, model.background);
   return point;
 }
 
@@ -59,16 +60,17 @@ void FaceLedger<D>::for_each_near(const Vec<D, double>& x, Visit&& visit) const 
 
 template <int D>
 std::vector<FaceImpulse<D>> FaceLedger<D>::faces(const FluidParticles<D>& fluid,
+                                                 std::span<const double> density,
                                                  const std::vector<FrozenInStep<D>>& frozen) const {
   std::map<int, Vec<D, Int128>> from;
   with_pair_numbers(model_, [&]<class Kernel, class Numbers>(Kernel, auto, const Numbers& numbers) {
     using Real = typename Numbers::Real;
     for (std::size_t g = 0; g < fluid.size(); ++g) {
-      const PairPoint<D> ghost = point_of(model_, fluid, g);
+      const PairPoint<D> ghost = point_of(model_, fluid, density, g);
       if (region_.contains(ghost.x)) continue;
       Vec<D, Int128>& sum = from[domains_.owner(ghost.x)];
       for_each_near(ghost.x, [&](std::size_t i) {
-        const PairPoint<D> own = point_of(model_, fluid, i);
+        const PairPoint<D> own = point_of(model_, fluid, density, i);
         if (region_.contains(own.x))
           add(sum, impulse_of_pair<Kernel>(numbers, own, ghost, [](const auto&) { return Real(1); }), 1);
       });
@@ -78,7 +80,7 @@ std::vector<FaceImpulse<D>> FaceLedger<D>::faces(const FluidParticles<D>& fluid,
       const bool own_point = region_.contains(point.x);
       const NoSlipFactor<D, Real> beta(model_, fp);
       for_each_near(point.x, [&](std::size_t i) {
-        const PairPoint<D> other = point_of(model_, fluid, i);
+        const PairPoint<D> other = point_of(model_, fluid, density, i);
         if (region_.contains(other.x) == own_point) return;
         Vec<D, Int128>& sum = from[domains_.owner(own_point ? other.x : point.x)];
         add(sum, impulse_of_pair<Kernel>(numbers, other, point, beta), own_point ? -1 : 1);
@@ -98,7 +100,7 @@ Vec<D, Int128> FaceLedger<D>::received(const FluidParticles<D>& fluid, const Mod
   std::visit(
       [&](const auto& numbered) {
         for (std::uint32_t i = 0; i < fluid.size(); ++i)
-          if (region_.contains(point_of(model_, fluid, i).x)) add(sum, numbered.sums(numbered.place(i)).impulse, 1);
+          if (region_.contains(fluid.position(i))) add(sum, numbered.sums(numbered.place(i)).impulse, 1);
       },
       pass);
   for (std::size_t k = 0; k < frozen.size(); ++k)

@@ -23,7 +23,9 @@ class FaceLedger {
 
   /// Impulse (iota) that the PPs and FPs in the region received from ghosts, by the rank that owns these, in increasing
   /// order. Across a periodic border that may be the own rank; what it gives itself adds up to zero.
-  std::vector<FaceImpulse<D>> faces(const FluidParticles<D>& fluid, const std::vector<FrozenInStep<D>>& frozen) const;
+  /// density: of the PPs, PPs per rcut^D.
+  std::vector<FaceImpulse<D>> faces(const FluidParticles<D>& fluid, std::span<const double> density,
+                                    const std::vector<FrozenInStep<D>>& frozen) const;
 
   /// Impulse that the pass summed for all PPs and FPs in the region.
   Vec<D, Int128> received(const FluidParticles<D>& fluid, const ModelPass<D>& pass,

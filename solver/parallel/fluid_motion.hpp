@@ -85,14 +85,14 @@ class FluidMotion {
       for (int axis = 0; axis < D; ++axis) given_[axis] += impulse[axis];
     }
     const Vec<D, double> before = x;
-    const RangeFault fault = advance(x, v, fluid.density()[i], sums, constants_);
+    const RangeFault fault = advance(x, v, sums, constants_);
     if (fault != RangeFault::none) [[unlikely]]
       report(fault_, fault, step_, fluid.id[i], v, sums);
     for (int axis = 0; axis < D; ++axis) {
       fluid.x(axis)[i] = x[axis];
       fluid.v(axis)[i] = v[axis];
     }
-    pass.moved(place, x, v, fluid.density()[i]);
+    pass.moved(place, x, v);
     keep_farthest(x - before);
     ++count_;
   }
@@ -114,8 +114,7 @@ class FluidMotion {
       store_lanes(motion.x[axis], &fluid.x(axis)[i]);
       store_lanes(motion.v[axis], &fluid.v(axis)[i]);
     }
-    store_lanes(motion.density, &fluid.density()[i]);
-    pass.moved(place, motion.x, motion.v, motion.density);
+    pass.moved(place, motion.x, motion.v);
     keep_farthest(motion.x - x);
     count_ += lane_count;
     return true;

@@ -75,34 +75,12 @@ std::vector<std::vector<std::uint32_t>> frozen_by_plane(const CellGrid<D>& grid,
 }
 
 template <int D, class Numbers>
-void FluidPass<D, Numbers>::prepare(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
-  blocks_.fill(model_, numbers_, fluid, grid);
-  half_rows_ = row_offsets(grid, true);
-  all_rows_ = row_offsets(grid, false);
-}
-
-template <int D, class Numbers>
-void FluidPass<D, Numbers>::sum_once(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
-  prepare(fluid, grid);
-  kept_.clear();
-  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
-    for_each_band(grid, [&](int first, int last, Search& search, std::size_t) {
-      for_each_row(grid, first, last, [&](const Vec<D, int>& row) {
-        for_each_list(fluid, grid, row, search, [&](Lists& lists) {
-          sum_lists<Kernel, transport, false>(
-              numbers_, blocks_.data(), lists, [&](std::uint32_t i) { return blocks_.centre(i); },
-              [](std::uint32_t) { return UnitFactor{}; },
-              [&](std::uint32_t i, const auto& sums) { blocks_.add(i, sums); });
-        });
-      });
-    });
-  });
-}
-
-template <int D, class Numbers>
 void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region,
                                  double reach, std::span<const std::uint32_t> foreign, bool apart) {
-  prepare(fluid, grid);
+  blocks_.fill(model_, numbers_, fluid, grid);
+  serves_on_ = reach > 1.0;
+  half_rows_ = row_offsets(grid, true);
+  all_rows_ = row_offsets(grid, false);
   for (Search& search : searches_) search.measured = 0;
   foreign_.assign(blocks_.size(), 0);
   for (const std::uint32_t i : foreign) foreign_[blocks_.place(i) / lanes] = 1;
@@ -220,18 +198,69 @@ std::uint16_t FluidPass<D, Numbers>::lanes_near(const FluidParticles<D>& fluid, 
 }
 
 template <int D, class Numbers>
-void FluidPass<D, Numbers>::sum_rest(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
-  blocks_.refill(model_, numbers_, fluid, [&](std::uint32_t block) { return foreign_[block] != 0; });
-  sum_lists_of(rest, grid);
+void FluidPass<D, Numbers>::sum_rest_densities(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
+  blocks_.refill(numbers_, fluid, [&](std::uint32_t block) { return foreign_[block] != 0; });
+  sum_densities_of(rest, grid);
 }
 
 template <int D, class Numbers>
-void FluidPass<D, Numbers>::sum_lists_of(Part part, const CellGrid<D>& grid) {
+void FluidPass<D, Numbers>::sum_densities_of(Part part, const CellGrid<D>& grid) {
+  with_pair_law(model_, [&]<class Kernel>(Kernel, auto) {
+    for_each_band(grid, [&](int, int, Search& search, std::size_t band) {
+      kept_[parts * band + part].template sum_densities<Kernel>(numbers_, blocks_, search.squares);
+    });
+  });
+}
+
+template <int D, class Numbers>
+void FluidPass<D, Numbers>::sum_forces_of(Part part, const CellGrid<D>& grid) {
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     for_each_band(grid, [&](int, int, Search& search, std::size_t band) {
       kept_[parts * band + part].template sum<Kernel, transport>(numbers_, blocks_, search.squares);
     });
   });
+}
+
+template <int D, class Numbers>
+std::optional<std::uint32_t> FluidPass<D, Numbers>::close_densities(std::span<const std::uint32_t> others,
+                                                                    std::span<double> density) {
+#pragma omp parallel for num_threads(threads_) schedule(static) if (threads_ > 1)
+  for (std::uint32_t block = 0; block < blocks_.size(); ++block) {
+    const auto [first, count] = blocks_.held(block);
+    std::uint32_t lane = 0;
+    for (; lane + lane_count <= count; lane += lane_count)
+      store_lanes(summed_density(numbers_.density(blocks_.density_of_lanes(block * lanes + lane)), model_.self_density),
+                  &density[first + lane]);
+    for (; lane < count; ++lane)
+      density[first + lane] = summed_density(
+          static_cast<std::int64_t>(numbers_.density(blocks_.density(block * lanes + lane))), model_.self_density);
+  }
+  for (const std::uint32_t i : others) density[i] = model_.rest_density;
+  set_densities<false>(density);
+  const auto wrong =
+      std::ranges::find_if(density, [&](double rho) { return !is_in_range(rho, model_.rest_density); });
+  if (wrong == density.end()) return std::nullopt;
+  return static_cast<std::uint32_t>(wrong - density.begin());
+}
+
+template <int D, class Numbers>
+void FluidPass<D, Numbers>::take_densities(std::span<const double> density) {
+  set_densities<true>(density);
+}
+
+/// Volumes of all PPs, or of those in blocks that hold a foreign one. Lanes of gaps keep theirs.
+template <int D, class Numbers>
+template <bool foreign_alone>
+void FluidPass<D, Numbers>::set_densities(std::span<const double> density) {
+#pragma omp parallel for num_threads(threads_) schedule(static) if (threads_ > 1 && !foreign_alone)
+  for (std::uint32_t block = 0; block < blocks_.size(); ++block) {
+    if (foreign_alone && foreign_[block] == 0) continue;
+    const auto [first, count] = blocks_.held(block);
+    std::uint32_t lane = 0;
+    for (; lane + lane_count <= count; lane += lane_count)
+      blocks_.set_density(model_, block * lanes + lane, load_lanes(&density[first + lane]));
+    for (; lane < count; ++lane) blocks_.set_density(model_, block * lanes + lane, density[first + lane]);
+  }
 }
 
 /// Whether each block is so wide, or has lanes of a gap, that its lanes must be named; empty where none need be.
@@ -263,56 +292,44 @@ std::vector<std::uint8_t> FluidPass<D, Numbers>::places_in(const FluidParticles<
 }
 
 template <int D, class Numbers>
-void FluidPass<D, Numbers>::add_frozen(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
-                                       std::vector<NeighbourSums<D>>& frozen_sums) {
-  frozen_sums.assign(frozen.size(), {});
-  if (frozen.empty()) return;
-  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
-    const std::vector<std::vector<std::uint32_t>> by_plane = frozen_by_plane(grid, frozen);
-    for_each_band(grid, [&](int first, int last, Search& search, std::size_t) {
-      for (int plane = first; plane < last; ++plane)
-        for_each_frozen_list(grid, frozen, by_plane[static_cast<std::size_t>(plane)], search,
-                             [&](Lists& lists) { sum_frozen<Kernel, transport>(frozen, lists, frozen_sums); });
+void FluidPass<D, Numbers>::add_frozen_densities(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
+                                                 std::vector<std::int64_t>& sums) {
+  sums.assign(frozen.size(), 0);
+  with_pair_law(model_, [&]<class Kernel>(Kernel, auto) {
+    for_each_frozen_list(grid, frozen, [&](Lists& lists) {
+      sum_densities_of_lists<Kernel, true>(numbers_, blocks_.data(), lists, [&](std::uint32_t k, auto sum) {
+        sums[k] = static_cast<std::int64_t>(numbers_.density(sum));
+      });
     });
   });
 }
 
-/// All pairs of PPs whose first one lies in this row: calls work(lists) with the partners of some of its particles. A
-/// pair of two ghosts, which lie in margin cells, is left out.
+/// r of the law points from the FP to the PP.
+template <int D, class Numbers>
+void FluidPass<D, Numbers>::add_frozen(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
+                                       std::vector<NeighbourSums<D>>& frozen_sums) {
+  frozen_sums.assign(frozen.size(), {});
+  with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
+    for_each_frozen_list(grid, frozen, [&](Lists& lists) {
+      sum_lists<Kernel, transport, true>(
+          numbers_, blocks_.data(), lists, [&](std::uint32_t k) { return centre(frozen[k]); },
+          [&](std::uint32_t k) { return NoSlipFactor<D, typename Numbers::Real>(model_, frozen[k]); },
+          [&](std::uint32_t k, const auto& sums) { frozen_sums[k] = numbers_.sums(sums); });
+    });
+  });
+}
+
+/// Calls work(lists) with the PPs near some FPs, for all of them.
 template <int D, class Numbers>
 template <class Work>
-void FluidPass<D, Numbers>::for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
-                                          const Vec<D, int>& row, Search& search, Work&& work) {
-  bool inner_row = true;
-  for (int axis = 1; axis < D; ++axis) inner_row = inner_row && grid.is_inner(axis, row[axis]);
-  NearRows<D>& near = search.near;
-  Lists& lists = search.lists;
-  const auto run = [&](int begin_cell, int end_cell, bool ghost) {
-    const std::size_t cells = grid.row(row);
-    const std::uint32_t gap = blocks_.gap(row[D - 1]);
-    const std::uint32_t begin = grid.start(cells + static_cast<std::size_t>(begin_cell)) + gap;
-    const std::uint32_t end = grid.start(cells + static_cast<std::size_t>(end_cell)) + gap;
-    if (begin == end) return;
-    near.fit(grid, blocks_, half_rows_, row, ghost);
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const Vec<D, double> x = fluid.position(i - gap);
-      near.find(grid, {x, x});
-      lists.add(
-          i, blocks_.centre(i).x, near.count(), [&](std::size_t n) __attribute__((always_inline)) {
-            auto range = near.range(grid, n);
-            range.first = std::max(range.first, i + 1);  // other rows lie behind i
-            return range;
-          });
-      if (!lists.is_full() && i + 1 < end) continue;
-      work(lists);
-      lists.clear();
-    }
-  };
-  const int first_inner = grid.margin(0), end_inner = grid.margin(0) + grid.inner(0);
-  if (!inner_row) return run(0, grid.count(0), true);
-  run(0, first_inner, true);
-  run(first_inner, end_inner, false);
-  run(end_inner, grid.count(0), true);
+void FluidPass<D, Numbers>::for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
+                                                 Work&& work) {
+  if (frozen.empty()) return;
+  const std::vector<std::vector<std::uint32_t>> by_plane = frozen_by_plane(grid, frozen);
+  for_each_band(grid, [&](int first, int last, Search& search, std::size_t) {
+    for (int plane = first; plane < last; ++plane)
+      for_each_frozen_list(grid, frozen, by_plane[static_cast<std::size_t>(plane)], search, work);
+  });
 }
 
 /// FPs of a plane of cells, ordered by rows: calls work(lists) with the PPs near some of them.
@@ -338,17 +355,6 @@ void FluidPass<D, Numbers>::for_each_frozen_list(const CellGrid<D>& grid, const 
   }
 }
 
-/// r of the law points from the FP to the PP.
-template <int D, class Numbers>
-template <class Kernel, bool transport>
-void FluidPass<D, Numbers>::sum_frozen(const std::vector<FrozenInStep<D>>& frozen, Lists& lists,
-                                       std::vector<NeighbourSums<D>>& frozen_sums) {
-  sum_lists<Kernel, transport, true>(
-      numbers_, blocks_.data(), lists, [&](std::uint32_t k) { return centre(frozen[k]); },
-      [&](std::uint32_t k) { return NoSlipFactor<D, typename Numbers::Real>(model_, frozen[k]); },
-      [&](std::uint32_t k, const auto& sums) { frozen_sums[k] = numbers_.sums(sums); });
-}
-
 /// One pair as the pass would compute it, alone: what it adds to the centre and to the PP at a place.
 template <int D, class Numbers>
 template <class Kernel, bool transport, bool lanes_first, class Beta>
@@ -363,6 +369,8 @@ auto FluidPass<D, Numbers>::sums_of_pair(const Centre& centre, std::uint32_t pla
       numbers_, alone.data(), partner, [&](std::uint32_t) { return centre; }, [&](std::uint32_t) { return beta; },
       [&](std::uint32_t, const auto& sums) { result.centre = numbers_.sums(sums); });
   result.other = numbers_.sums(alone.sums(lane));
+  sum_densities_of_lists<Kernel, lanes_first>(numbers_, alone.data(), partner, [](std::uint32_t, auto) {});
+  result.density = static_cast<std::int64_t>(numbers_.density(alone.density(lane)));
   return result;
 }
 
@@ -384,28 +392,25 @@ std::optional<std::vector<PartnerTrace<D>>> FluidPass<D, Numbers>::trace(const F
   while (traced < fluid.size() && !(fluid.id[traced] == particle && is_owned(traced))) ++traced;
   if (traced == fluid.size()) return std::nullopt;
   const std::uint32_t place = blocks_.place(traced);
-  std::vector<std::uint64_t> ids(blocks_.size() * lanes);
+  constexpr std::uint64_t none = ~std::uint64_t{0};  // lanes of gaps
+  std::vector<std::uint64_t> ids(blocks_.size() * lanes, none);
   for (std::uint32_t i = 0; i < fluid.size(); ++i) ids[blocks_.place(i)] = fluid.id[i];
   Search search;
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
-    for_each_row(grid, 0, grid.count(D - 1), [&](const Vec<D, int>& row) {
-      for_each_list(fluid, grid, row, search, [&](const Lists& lists) {
-        lists.for_each_partner([&](std::uint32_t i, std::uint32_t j) {
-          if (i != place && j != place) return;
-          const PairSums sums = sums_of_pair<Kernel, transport, false>(blocks_.centre(i), j, UnitFactor{});
-          keep({false, ids[i == place ? j : i], 0, i == place ? sums.centre : sums.other});
-        });
+    for (const KeptLists<D, Numbers>& lists : kept_)
+      lists.for_each_pair([&](std::uint32_t i, std::uint32_t j) {
+        if ((i != place && j != place) || ids[j] == none) return;
+        const PairSums sums = sums_of_pair<Kernel, transport, false>(blocks_.centre(i), j, UnitFactor{});
+        keep({false, ids[i == place ? j : i], 0, i == place ? sums.centre : sums.other, sums.density});
       });
-    });
     for (const auto& plane : frozen_by_plane(grid, frozen))
       for_each_frozen_list(grid, frozen, plane, search, [&](const Lists& lists) {
         lists.for_each_partner([&](std::uint32_t k, std::uint32_t j) {
           const FrozenInStep<D>& fp = frozen[k];
-          if (j == place)
-            keep({true, fp.solid, fp.index,
-                  sums_of_pair<Kernel, transport, true>(centre(fp), place,
-                                                        NoSlipFactor<D, typename Numbers::Real>(model_, fp))
-                      .other});
+          if (j != place) return;
+          const PairSums sums = sums_of_pair<Kernel, transport, true>(
+              centre(fp), place, NoSlipFactor<D, typename Numbers::Real>(model_, fp));
+          keep({true, fp.solid, fp.index, sums.other, sums.density});
         });
       });
   });

@@ -1,4 +1,12 @@
-// The pair pass of the fast engine: every pair of PPs once (half list), every PP-FP pair once, in rows of lanes.
+// The pair passes of the fast engine, first of densities, then of forces: in each every pair of PPs once (half list),
+// every PP-FP pair once, in rows of lanes.
+//
+// The calls of a step, of which `list` is left out while the PPs keep their order:
+//   list                                       where the PPs have a new order
+//   sum_inner_densities, sum_rest_densities, add_frozen_densities
+//   close_densities                            the densities of owned PPs are known; those of others come by message
+//   sum_inner, take_densities, sum_rest, add_frozen
+//   moved                                      of each owned PP
 #pragma once
 
 #include <algorithm>
@@ -40,33 +48,36 @@ class FluidPass {
   FluidPass(const Model<D>& model, int threads)
       : model_(model), numbers_(model.pair, model.rest_density), threads_(threads) {}
 
-  /// Finds the pairs of which one PP lies in `region`, up to a distance of `reach` (rcut, at least 1): `sum` finds all
+  /// Finds the pairs of which one PP lies in `region`, up to a distance of `reach` (rcut, at least 1): the sums find all
   /// within rcut until two PPs have come nearer by the rest, or one from outside the region has entered the part that
-  /// matters. `fluid` is in the order of `grid`, whose cells are fit to that reach. `foreign`: the PPs that others than
-  /// `moved` may change. With `apart`, `sum_inner` sums pairs that have nothing to do with these.
+  /// matters. `fluid` is in the order of `grid`, whose cells are fit to that reach or a longer one. `foreign`: the PPs
+  /// that others than `moved` may change. With `apart`, the inner sums are of pairs that have nothing to do with these.
   void list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region, double reach,
             std::span<const std::uint32_t> foreign, bool apart);
-  /// After `list`, with the PPs in the same order: sums over all PPs near each PP of the region; sums of others are
-  /// partial and meaningless.
-  void sum(FluidParticles<D>& fluid, const CellGrid<D>& grid) {
-    sum_inner(grid);
-    sum_rest(fluid, grid);
-  }
-  /// The same in two parts, of which only the second looks at foreign PPs.
-  void sum_inner(const CellGrid<D>& grid) { sum_lists_of(inner, grid); }
-  void sum_rest(FluidParticles<D>& fluid, const CellGrid<D>& grid);
-  /// After a sum: the new state of the PP at this place, or of those that lie side by side from there on, as many as
-  /// there are lanes of the state. Each PP that is not foreign must be given before the next sum.
-  template <class Real>
-  MAPPM_INLINE void moved(std::uint32_t place, const Vec<D, Real>& x, const Vec<D, Real>& v, const Real& density) {
-    if (!kept_.empty()) blocks_.lay(model_, numbers_, place, x, v, density);
-  }
-  /// Both in one, for PPs that will not keep their order.
-  void sum_once(FluidParticles<D>& fluid, const CellGrid<D>& grid);
-  /// After a sum: adds the pairs of PPs and FPs. `frozen` are all FPs in reach; `frozen_sums[k]` becomes the sum over
-  /// PPs where FP k lies in the region.
+  /// With the PPs in the order of `list`: densities over all PPs near each PP of the region; those of others are partial
+  /// and meaningless. In two parts, of which only the second looks at foreign PPs.
+  void sum_inner_densities(const CellGrid<D>& grid) { sum_densities_of(inner, grid); }
+  void sum_rest_densities(FluidParticles<D>& fluid, const CellGrid<D>& grid);
+  /// Adds those of PPs and FPs. `frozen` are all FPs in reach; sums[k] becomes the sum over PPs where FP k lies in the
+  /// region, density quanta.
+  void add_frozen_densities(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
+                            std::vector<std::int64_t>& sums);
+  /// Ends the sums of densities: density[i] of every PP, PPs per rcut^D. Those that are not owned get the rest density.
+  /// Returns an owned PP whose density is out of range, if there is one.
+  std::optional<std::uint32_t> close_densities(std::span<const std::uint32_t> others, std::span<double> density);
+  /// Densities of foreign PPs from others.
+  void take_densities(std::span<const double> density);
+  /// The same for the forces.
+  void sum_inner(const CellGrid<D>& grid) { sum_forces_of(inner, grid); }
+  void sum_rest(const CellGrid<D>& grid) { sum_forces_of(rest, grid); }
   void add_frozen(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
                   std::vector<NeighbourSums<D>>& frozen_sums);
+  /// After all sums: the new state of the PP at this place, or of those that lie side by side from there on, as many as
+  /// there are lanes of the state. Each PP that is not foreign must be given before the next sum.
+  template <class Real>
+  MAPPM_INLINE void moved(std::uint32_t place, const Vec<D, Real>& x, const Vec<D, Real>& v) {
+    if (serves_on_) blocks_.lay(numbers_, place, x, v);
+  }
 
   /// The place of PP i; what places are more than indices in a plane of cells.
   std::uint32_t place(std::uint32_t i) const { return blocks_.place(i); }
@@ -78,7 +89,7 @@ class FluidPass {
     return numbers_.sums(blocks_.sums_of_lanes(place));
   }
 
-  /// After a sum and `add_frozen` in the step in which `fluid` was ordered, with their arguments: what each partner
+  /// After `add_frozen` in the step in which `fluid` was ordered: what each partner
   /// gave to the PP with this id that lies in the region of the grid, every pair of the pass taken alone; none where
   /// there is no such PP. For an FP `id` is the index of its solid in the step.
   std::optional<std::vector<PartnerTrace<D>>> trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
@@ -117,22 +128,22 @@ class FluidPass {
   void measure_all(std::uint32_t own, std::uint32_t other, typename Numbers::Real square_of_reach, Found&& found) const;
   std::uint16_t lanes_near(const FluidParticles<D>& fluid, std::uint32_t place, std::uint32_t block) const;
   template <class Work>
-  void for_each_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row, Search& search,
-                     Work&& work);
-  template <class Work>
   void for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
                             std::span<const std::uint32_t> chosen, Search& search, Work&& work) const;
   Centre centre(const FrozenInStep<D>& fp) const;
-  template <class Kernel, bool transport>
-  void sum_frozen(const std::vector<FrozenInStep<D>>& frozen, Lists& lists, std::vector<NeighbourSums<D>>& frozen_sums);
+  template <class Work>
+  void for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen, Work&& work);
   static constexpr std::uint32_t lanes = block_lanes<Numbers>;
   struct PairSums {
     NeighbourSums<D> centre, other;
+    std::int64_t density;
   };
   template <class Kernel, bool transport, bool lanes_first, class Beta>
   PairSums sums_of_pair(const Centre& centre, std::uint32_t place, const Beta& beta) const;
-  void prepare(FluidParticles<D>& fluid, const CellGrid<D>& grid);
-  void sum_lists_of(Part part, const CellGrid<D>& grid);
+  void sum_densities_of(Part part, const CellGrid<D>& grid);
+  void sum_forces_of(Part part, const CellGrid<D>& grid);
+  template <bool foreign_alone>
+  void set_densities(std::span<const double> density);
   std::vector<std::uint8_t> wide_blocks(const FluidParticles<D>& fluid) const;
   std::vector<std::uint8_t> places_in(const FluidParticles<D>& fluid, const Region<D>& region) const;
   int band_height(const CellGrid<D>& grid) const;
@@ -145,8 +156,9 @@ class FluidPass {
   std::vector<Vec<D, int>> half_rows_, all_rows_;
   std::vector<Search> searches_;  // of the threads
   PairBlocks<D, Numbers> blocks_;
-  std::vector<KeptLists<D, Numbers>> kept_;  // of each band one for each part; none where they serve no longer
+  std::vector<KeptLists<D, Numbers>> kept_;  // of each band one for each part
   std::vector<std::uint8_t> foreign_;        // of each block: whether it holds a foreign PP
+  bool serves_on_ = false;                   // the lists, beyond this step
 };
 
 /// The pass in the precision of the model.

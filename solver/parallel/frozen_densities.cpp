@@ -20,14 +20,14 @@ bool nearer_than(const Model<D>& model, const Vec<D, double>& a, const Vec<D, do
 /// Every pair once: what it gives is the same for both.
 template <int D>
 void FrozenDensities<D>::add(const PlacedSolids<D>& solids, const CellLevels<D>& levels,
-                             std::vector<NeighbourSums<D>>& sums) {
+                             std::vector<std::int64_t>& sums) {
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     for (std::uint32_t a = 0; a < solids.bodies.size(); ++a) {
       if (solids.first[a] == solids.first[a + 1]) continue;
       const SolidInStep<D>& one = solids.bodies[a];
       levels.for_each_near(separation(model_.pair, one.solid->x), one.shape->reach, cutoff, [&](std::uint32_t b) {
         const SolidInStep<D>& other = solids.bodies[b];
-        if (b <= a || one.solid->group == other.solid->group) return;
+        if (b <= a || !give_each_other_density(model_, *one.solid, *other.solid, true)) return;
         const double reach = one.shape->reach + other.shape->reach + cutoff;
         if (!nearer_than(model_, one.solid->x, other.solid->x, reach)) return;
         choose(solids, b, one, others_);
@@ -56,37 +56,32 @@ void FrozenDensities<D>::fill_blocks(const std::vector<FrozenInStep<D>>& frozen)
   for (std::size_t n = 0; n < blocks_.size() * lane_count; ++n) {
     Block& block = blocks_[n / lane_count];
     const std::size_t lane = n % lane_count;
-    for (int axis = 0; axis < D; ++axis) {
+    for (int axis = 0; axis < D; ++axis)
       block.x[axis][lane] = n < others_.size() ? frozen[others_[n]].place.x[axis] : 4.0 * box_quanta;
-      block.v[axis][lane] = n < others_.size() ? frozen[others_[n]].place.v[axis] : 0.0;
-    }
     if (lane == 0) block.density = 0;
   }
 }
 
 template <int D>
 template <class Kernel>
-void FrozenDensities<D>::add_pairs(const std::vector<FrozenInStep<D>>& frozen, std::vector<NeighbourSums<D>>& sums) {
+void FrozenDensities<D>::add_pairs(const std::vector<FrozenInStep<D>>& frozen, std::vector<std::int64_t>& sums) {
   for (const std::size_t k : ones_) {
     const PlacedFrozen<D>& one = frozen[k].place;
     IntLanes density = 0;
     for (Block& block : blocks_) {
-      Vec<D, Lanes> d, v;
-      for (int axis = 0; axis < D; ++axis) {
-        d[axis] = Lanes(one.x[axis]) - load_lanes(block.x[axis]);
-        v[axis] = Lanes(one.v[axis]) - load_lanes(block.v[axis]);
-      }
+      Vec<D, Lanes> d;
+      for (int axis = 0; axis < D; ++axis) d[axis] = Lanes(one.x[axis]) - load_lanes(block.x[axis]);
       const Vec<D, Lanes> r = separation(model_.pair, d);
       const Lanes square = dot(r, r);
       if (!any_below(square, 1.0)) continue;
-      const IntLanes given = pair_density<Kernel>(model_.pair, r, v, cut_distance(square));
+      const IntLanes given = pair_density<Kernel>(model_.pair, cut_distance(square));
       density += given;
       block.density += given;
     }
-    sums[k].density += sum_of_lanes(density);
+    sums[k] += sum_of_lanes(density);
   }
   for (std::size_t n = 0; n < others_.size(); ++n)
-    sums[others_[n]].density += blocks_[n / lane_count].density[n % lane_count];
+    sums[others_[n]] += blocks_[n / lane_count].density[n % lane_count];
 }
 
 template class FrozenDensities<2>;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <unordered_map>
 #include <utility>
 
 #include "parallel/solid_message.hpp"
@@ -134,20 +135,18 @@ void Halo<D>::pack_fluid(FluidParticles<D>& fluid, const Residents<D>& residents
       put(buffer, count);
       continue;
     }
-    for (std::size_t n = 0; n < images_.size(); ++n)
-      if (images_[n].partner == static_cast<int>(partner)) count += selected_[n].size();
+    for_each_image_of(partner, [&](std::size_t n) { count += selected_[n].size(); });
     std::byte* to = extend(buffer, sizeof count * (1 + count * (1 + FluidParticles<D>::field_count)));
     write(to, count);
-    for (std::size_t n = 0; n < images_.size(); ++n)
-      if (images_[n].partner == static_cast<int>(partner))
-        for (const std::uint32_t i : selected_[n]) write(to, fluid.id[i]);
+    for_each_image_of(partner, [&](std::size_t n) {
+      for (const std::uint32_t i : selected_[n]) write(to, fluid.id[i]);
+    });
     for (int f = 0; f < FluidParticles<D>::field_count; ++f)
-      for (std::size_t n = 0; n < images_.size(); ++n) {
-        if (images_[n].partner != static_cast<int>(partner)) continue;
+      for_each_image_of(partner, [&](std::size_t n) {
         const double shift = f < D ? images_[n].shift[f] : 0.0;
         const auto& values = fluid.field[static_cast<std::size_t>(f)];
         for (const std::uint32_t i : selected_[n]) write(to, values[i] + shift);
-      }
+      });
   }
 }
 
@@ -212,41 +211,109 @@ void Halo<D>::unpack_solids(std::vector<BufferReader>& readers, std::vector<Soli
   for (BufferReader& reader : readers)
     while (!reader.at_end())
       for (auto count = reader.get<std::uint64_t>(); count > 0; --count) {
-        Solid<D> solid = get_solid(reader, model_);
+        Solid<D> solid = get_solid<D>(reader);
         (region_.contains(solid.x) ? here : copies).push_back(std::move(solid));
       }
   std::sort(here.begin(), here.end(), [](const Solid<D>& a, const Solid<D>& b) { return a.id < b.id; });
   solids = std::move(here);
 }
 
-/// The new owner receives the densities of all FPs and the contacts; a copy only the densities it can need.
+/// The new owner receives the contacts.
 template <int D>
 void Halo<D>::pack_solid(const Solid<D>& solid, std::size_t image) {
-  const bool migrates = images_[image].region.contains(solid.x);
-  std::vector<std::uint32_t> frozen;
-  if (migrates) {
-    frozen = all_frozen(solid);
-  } else if (may_reach(model_, solid, image_reach_[image])) {
-    const Shape<D>& shape = model_.shapes[solid.shape];
-    for (std::uint32_t k = 0; k < solid.density.size(); ++k)
-      if (image_reach_[image].contains(place_of(solid, shape.frozen[k], model_.pair.length))) frozen.push_back(k);
+  put_solid(out_[static_cast<std::size_t>(images_[image].partner)], solid, solid.x + images_[image].shift,
+            images_[image].region.contains(solid.x));
+}
+
+/// Message to each partner: number of PPs, their ids, their densities; then the FPs.
+template <int D>
+void Halo<D>::begin_densities(const FluidParticles<D>& fluid, const Residents<D>& residents, std::span<double> density,
+                              const PlacedSolids<D>& solids) {
+  residents.copy_densities(fluid, density);
+  for (std::size_t n = 0; n < images_.size(); ++n) {
+    selected_[n].clear();
+    if (needed_[n].own_shift) continue;
+    residents.select(fluid, n, selected_[n]);
+    std::erase_if(selected_[n], [&](std::uint32_t i) { return !image_reach_[n].contains(fluid.position(i)); });
   }
-  put_solid(out_[static_cast<std::size_t>(images_[image].partner)], solid, solid.x + images_[image].shift, frozen,
-            migrates);
+  for (std::size_t partner = 0; partner < partners_.size(); ++partner) {
+    std::uint64_t count = 0;
+    for_each_image_of(partner, [&](std::size_t n) { count += selected_[n].size(); });
+    std::byte* to = extend(out_[partner], sizeof count * (1 + 2 * count));
+    write(to, count);
+    for_each_image_of(partner, [&](std::size_t n) {
+      for (const std::uint32_t i : selected_[n]) write(to, fluid.id[i]);
+    });
+    for_each_image_of(partner, [&](std::size_t n) {
+      for (const std::uint32_t i : selected_[n]) write(to, density[i]);
+    });
+  }
+  put_frozen_densities(solids);
+  send_messages();
+}
+
+namespace {
+
+/// Density of an FP in a message.
+struct FrozenDensity {
+  std::uint64_t solid;  // id
+  std::uint64_t index;  // in its shape
+  double density;
+};
+
+}  // namespace
+
+template <int D>
+void Halo<D>::put_frozen_densities(const PlacedSolids<D>& solids) {
+  for (const FrozenInStep<D>& fp : solids.frozen) {
+    if (!region_.contains(fp.place.x)) continue;
+    for (std::size_t n = 0; n < images_.size(); ++n)
+      if (image_reach_[n].contains(fp.place.x))
+        put(out_[static_cast<std::size_t>(images_[n].partner)],
+            FrozenDensity{solids.bodies[fp.solid].solid->id, fp.index, fp.density});
+  }
+}
+
+template <int D>
+void Halo<D>::end_densities(const FluidParticles<D>& fluid, Residents<D>& residents, std::span<double> density,
+                            PlacedSolids<D>& solids) {
+  receive_messages();
+  std::vector<BufferReader> readers(in_.begin(), in_.end());
+  for (std::size_t n = 0; n < readers.size(); ++n) residents.take_densities(fluid, n, readers[n], density);
+  take_frozen_densities(readers, solids);
+}
+
+/// All images of an FP have its density.
+template <int D>
+void Halo<D>::take_frozen_densities(std::vector<BufferReader>& readers, PlacedSolids<D>& solids) const {
+  std::unordered_multimap<std::uint64_t, std::size_t> bodies;  // by the id of their solid
+  for (BufferReader& reader : readers)
+    while (!reader.at_end()) {
+      if (bodies.empty())
+        for (std::size_t b = 0; b < solids.bodies.size(); ++b) bodies.emplace(solids.bodies[b].solid->id, b);
+      const auto given = reader.get<FrozenDensity>();
+      const auto [first, last] = bodies.equal_range(given.solid);
+      for (auto body = first; body != last; ++body) {
+        const auto begin = solids.frozen.begin() + static_cast<std::ptrdiff_t>(solids.first[body->second]);
+        const auto end = solids.frozen.begin() + static_cast<std::ptrdiff_t>(solids.first[body->second + 1]);
+        const auto fp = std::lower_bound(begin, end, given.index, [](const FrozenInStep<D>& one, std::uint64_t index) {
+          return one.index < index;
+        });
+        if (fp != end && fp->index == given.index) set_density(model_, *fp, given.density);
+      }
+    }
 }
 
 template <int D>
 std::vector<HomeReport<D>> Halo<D>::send_home(const std::vector<Solid<D>>& copies,
                                               std::vector<HomeReport<D>>&& reports) {
   for (std::size_t c = 0; c < copies.size(); ++c) {
-    if (reports[c].index.empty()) continue;
+    if (!reports[c].any) continue;
     const int owner = domains_.owner(copies[c].x);
     const auto partner = std::lower_bound(partners_.begin(), partners_.end(), owner) - partners_.begin();
     Buffer& buffer = out_[static_cast<std::size_t>(partner)];
     put(buffer, reports[c].solid);
     put(buffer, reports[c].fluid);
-    put(buffer, reports[c].index);
-    put(buffer, reports[c].density);
   }
   send_messages();
   receive_messages();
@@ -257,8 +324,6 @@ std::vector<HomeReport<D>> Halo<D>::send_home(const std::vector<Solid<D>>& copie
       HomeReport<D>& report = received.emplace_back();
       report.solid = reader.get<std::uint64_t>();
       report.fluid = reader.get<SolidImpulse<D>>();
-      reader.get(report.index);
-      reader.get(report.density);
     }
   }
   return received;

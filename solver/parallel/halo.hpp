@@ -3,7 +3,8 @@
 //      it (a migrant) or holds it as a ghost or copy follows from its position alone, so migration and halo are one
 //      message: the paper's steps (i)-(iv) and (x)-(xi). PPs whose images the process needs itself are no message. It
 //      begins with the step in which the sender's stay will end (residents.hpp).
-//   2. `send_home`: what FPs of copies received from the PPs of this region goes to the owner of the solid: the paper's
+//   2. densities: those of PPs and FPs in this region go wherever they are ghosts.
+//   3. `send_home`: what FPs of copies received from the PPs of this region goes to the owner of the solid: the paper's
 //      steps (vii) and (viii).
 #pragma once
 
@@ -13,6 +14,7 @@
 #include "parallel/communicator.hpp"
 #include "parallel/domains.hpp"
 #include "parallel/message.hpp"
+#include "parallel/placed_solids.hpp"
 #include "parallel/residents.hpp"
 #include "parallel/stopwatch.hpp"
 #include "particles/engine.hpp"
@@ -20,13 +22,12 @@
 
 namespace mappm {
 
-/// What one process found out about a copy of a solid: the load of the FPs in its region, and their new densities.
+/// What one process found out about a copy of a solid: the load of the FPs in its region.
 template <int D>
 struct HomeReport {
   std::uint64_t solid = 0;  // id
   SolidImpulse<D> fluid;
-  std::vector<std::uint32_t> index;  // of FPs in the shape
-  std::vector<double> density;       // theirs
+  bool any = false;  // such FPs
 };
 
 template <int D>
@@ -52,6 +53,14 @@ class Halo {
   void begin_exchange(State<D>& state, Residents<D>& residents, Stopwatch& watch);
   bool end_exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch);
 
+  /// In a step, after `settle` where the PPs have not stayed: densities of what lies in this region go to those who have
+  /// ghosts of it: density[i] of PP i, and of the FPs.
+  void begin_densities(const FluidParticles<D>& fluid, const Residents<D>& residents, std::span<double> density,
+                       const PlacedSolids<D>& solids);
+  /// Those of ghosts, from others.
+  void end_densities(const FluidParticles<D>& fluid, Residents<D>& residents, std::span<double> density,
+                     PlacedSolids<D>& solids);
+
   /// Delivers reports to the owners of the solids; returns those for solids owned here.
   std::vector<HomeReport<D>> send_home(const std::vector<Solid<D>>& copies, std::vector<HomeReport<D>>&& reports);
 
@@ -67,6 +76,13 @@ class Halo {
   void unpack_fluid(BufferReader& reader, FluidParticles<D>& fluid);
   void unpack_solids(std::vector<BufferReader>& readers, std::vector<Solid<D>>& solids,
                      std::vector<Solid<D>>& copies) const;
+  template <class Visit>
+  void for_each_image_of(std::size_t partner, Visit&& visit) const {
+    for (std::size_t n = 0; n < images_.size(); ++n)
+      if (images_[n].partner == static_cast<int>(partner)) visit(n);
+  }
+  void put_frozen_densities(const PlacedSolids<D>& solids);
+  void take_frozen_densities(std::vector<BufferReader>& readers, PlacedSolids<D>& solids) const;
   void send_messages();
   void receive_messages();
 

@@ -51,22 +51,36 @@ class KeptLists {
   /// thread.
   template <class Kernel, bool transport>
   void sum(const Numbers& numbers, PairBlocks<D, Numbers>& blocks, Column<Real>& squares) const {
-    for_each_chunk(
-        numbers, blocks.data(),
-        squares, [&](std::span<const Centre> centres, std::size_t base) __attribute__((always_inline)) {
-          Real* const distances = squares.data();
-          sum_blocks<Kernel, transport, false, typename Numbers::ListRounding, D>(
-              numbers, blocks.data(),
-              [&](auto&&... calls) __attribute__((always_inline)) {
-                detail::for_each_block<RealLanes>(
-                    centres, base, blocks_.data(), [ distances, base ](std::size_t n) __attribute__((always_inline)) {
-                      return distances + (n - base) * lanes;
-                    },
-                    calls...);
-              },
-              [&](std::uint32_t place) { return blocks.centre(place); }, [](std::uint32_t) { return UnitFactor{}; },
-              [&](std::uint32_t place, const auto& sums) { blocks.add(place, sums); });
-        });
+    for_each_walk(numbers, blocks.data(), squares, [&](auto&& walk) __attribute__((always_inline)) {
+      sum_blocks<Kernel, transport, false, typename Numbers::ListRounding, D>(
+          numbers, blocks.data(), walk, [&](std::uint32_t place) { return blocks.centre(place); },
+          [](std::uint32_t) { return UnitFactor{}; },
+          [&](std::uint32_t place, const auto& sums) { blocks.add(place, sums); });
+    });
+  }
+  /// The same of the densities.
+  template <class Kernel>
+  void sum_densities(const Numbers& numbers, PairBlocks<D, Numbers>& blocks, Column<Real>& squares) const {
+    for_each_walk(numbers, blocks.data(), squares, [&](auto&& walk) __attribute__((always_inline)) {
+      sum_densities_of_blocks<Kernel, typename Numbers::ListRounding, D>(
+          numbers, blocks.data(), walk, [&](std::uint32_t place, auto sum) { blocks.add_density(place, sum); });
+    });
+  }
+  /// Calls visit(place, partner) for every pair that the lists hold, within the cutoff or not.
+  template <class Visit>
+  void for_each_pair(Visit&& visit) const {
+    std::size_t n = 0;
+    auto named = named_.begin();
+    for (const Centre& centre : centres_)
+      for (; n < centre.end; ++n) {
+        unsigned partners = ~0u;
+        if (named != named_.end() && named->entry == n) partners = (named++)->partners;
+        for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+          const std::uint32_t partner = blocks_[n] * lanes + lane;
+          const bool own = blocks_[n] == centre.particle / lanes;
+          if ((partners >> lane & 1) != 0 && (!own || partner > centre.particle)) visit(centre.particle, partner);
+        }
+      }
   }
 
   struct Centre {
@@ -97,6 +111,22 @@ class KeptLists {
 
  private:
   static constexpr std::uint32_t lanes = block_lanes<Numbers>;
+  /// Calls use(walk) for some centres at once; walk(begin, visit, end) goes through their blocks (`for_each_block`).
+  template <class Use>
+  MAPPM_INLINE void for_each_walk(const Numbers& numbers, const PairBlock<D, Numbers>* blocks, Column<Real>& squares,
+                                  Use&& use) const {
+    for_each_chunk(
+        numbers, blocks, squares, [&](std::span<const Centre> centres, std::size_t base) __attribute__((always_inline)) {
+          Real* const distances = squares.data();
+          use([&](auto&&... calls) __attribute__((always_inline)) {
+            detail::for_each_block<RealLanes>(
+                centres, base, blocks_.data(), [ distances, base ](std::size_t n) __attribute__((always_inline)) {
+                  return distances + (n - base) * lanes;
+                },
+                calls...);
+          });
+        });
+  }
   struct NamedLanes {
     std::uint32_t entry;  // in blocks_
     std::uint16_t partners;

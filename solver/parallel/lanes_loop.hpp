@@ -30,7 +30,7 @@ MAPPM_INLINE PairResult<D, Sum> total(const PairResult<D, SumLanes<Sum>>& sums) 
     result.impulse[axis] = static_cast<Sum>(sum_of_lanes(sums.impulse[axis]));
     result.shift[axis] = static_cast<Sum>(sum_of_lanes(sums.shift[axis]));
   }
-  result.density = static_cast<Sum>(sum_of_lanes(sums.density));
+  result.shear = static_cast<Sum>(sum_of_lanes(sums.shear));
   return result;
 }
 
@@ -73,8 +73,10 @@ MAPPM_INLINE void pair_block(const Numbers& numbers, PairBlock<D, Numbers>& bloc
       sums.shift[axis] -= shift;
     }
   }
-  add_to(block.density, wrapped(given.density));
-  sums.density += wrapped(given.density);
+  if constexpr (transport) {
+    add_to(block.shear, wrapped(given.shear));
+    sums.shear += wrapped(given.shear);
+  }
 }
 
 inline constexpr std::size_t roots_ahead = 4;
@@ -286,16 +288,36 @@ MAPPM_INLINE void sum_blocks(const Numbers& numbers, PairBlock<D, Numbers>* cons
       [&](std::uint32_t n, std::size_t count) __attribute__((always_inline)) {
         centre = centre_of(n);
         beta = beta_of(n);
-        sums.density = static_cast<Wrapping<Sum>>(-Rounding::excess * count);
+        const detail::SumLanes<Sum> excess(static_cast<Wrapping<Sum>>(-Rounding::excess * count));
         for (int axis = 0; axis < D; ++axis) {
-          sums.impulse[axis] = sums.density;
-          if constexpr (transport) sums.shift[axis] = sums.density;
+          sums.impulse[axis] = excess;
+          if constexpr (transport) sums.shift[axis] = excess;
         }
+        if constexpr (transport) sums.shear = excess;
       },
       [&](std::uint32_t block, const typename Numbers::RealLanes& q) __attribute__((always_inline)) {
         detail::pair_block<Kernel, transport, lanes_first, Rounding>(numbers, blocks[block], centre, q, beta, sums);
       },
       [&](std::uint32_t n) __attribute__((always_inline)) { receive(n, detail::total<Sum>(sums)); });
+}
+
+/// The densities of all pairs of the lists, in the same way: receive(particle, sum).
+template <class Kernel, class Rounding, int D, class Numbers, class Walk, class Receive>
+MAPPM_INLINE void sum_densities_of_blocks(const Numbers& numbers, PairBlock<D, Numbers>* const blocks, Walk&& walk,
+                                          Receive&& receive) {
+  using Sum = typename Numbers::Sum;
+  using RealLanes = typename Numbers::RealLanes;
+  detail::SumLanes<Sum> sum(0);
+  walk(
+      [&](std::uint32_t, std::size_t count) __attribute__((always_inline)) {
+        sum = detail::SumLanes<Sum>(static_cast<Wrapping<Sum>>(-Rounding::excess * count));
+      },
+      [&](std::uint32_t block, const RealLanes& q) __attribute__((always_inline)) {
+        const auto given = lanes_of<Wrapping<Sum>>(pair_density<Kernel, Rounding, D>(numbers.law(), q));
+        detail::add_to(blocks[block].density, given);
+        sum += given;
+      },
+      [&](std::uint32_t n) __attribute__((always_inline)) { receive(n, static_cast<Sum>(sum_of_lanes(sum))); });
 }
 
 /// `sum_blocks` over lists of this step. Blocks that lie beyond the cutoff are dropped from them.
@@ -307,6 +329,15 @@ void sum_lists(const Numbers& numbers, PairBlock<D, Numbers>* const blocks, Part
   sum_blocks<Kernel, transport, lanes_first, typename Numbers::Rounding, D>(
       numbers, blocks, [&](auto&&... calls) __attribute__((always_inline)) { lists.for_each_block(calls...); },
       centre_of, beta_of, receive);
+}
+
+template <class Kernel, bool lanes_first, int D, class Numbers, class Receive>
+void sum_densities_of_lists(const Numbers& numbers, PairBlock<D, Numbers>* const blocks,
+                            PartnerLists<D, Numbers>& lists, Receive&& receive) {
+  lists.template measure<lanes_first>(numbers, blocks);
+  sum_densities_of_blocks<Kernel, typename Numbers::Rounding, D>(
+      numbers, blocks, [&](auto&&... calls) __attribute__((always_inline)) { lists.for_each_block(calls...); },
+      receive);
 }
 
 }  // namespace mappm

@@ -17,9 +17,10 @@ template <int D, class Numbers>
 struct alignas(sizeof(typename Numbers::RealLanes)) PairBlock {
   static constexpr int lanes = block_lanes<Numbers>;
   typename Numbers::Place x[D][lanes];
+  typename Numbers::Sum density[lanes];
   typename Numbers::Real v[D][lanes];
   typename Numbers::Real v2[lanes], pv2[lanes];
-  typename Numbers::Sum impulse[D][lanes], shift[D][lanes], density[lanes];
+  typename Numbers::Sum impulse[D][lanes], shift[D][lanes], shear[lanes];
 };
 
 /// The one particle of a loop over blocks: a PP or an FP.
@@ -39,6 +40,7 @@ class PairBlocks {
   using Sum = typename Numbers::Sum;
 
   /// Sums are set to zero. `fluid` is in the order of `grid`.
+  /// Volumes are those at rest.
   void fill(const Model<D>& model, const Numbers& numbers, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
     shifts_ = model.terms.transport;
     const int planes = grid.count(D - 1);
@@ -53,12 +55,18 @@ class PairBlocks {
     }
     reserve_tightly(blocks_, held_.size());
     blocks_.resize(held_.size());
-    refill(model, numbers, fluid, [](std::uint32_t) { return true; });
+    refill(numbers, fluid, [](std::uint32_t) { return true; });
+    using Real = typename Numbers::Real;
+    const auto rest = volume_terms(model.rest_density, model.rest_density, 1.0, model.background);
+    for (Block& block : blocks_) {
+      std::ranges::fill(block.v2, static_cast<Real>(rest.v2));
+      std::ranges::fill(block.pv2, static_cast<Real>(rest.pv2));
+    }
     contributions_.assign(size(), 0);
   }
   /// The same for those blocks alone for which chosen(block), with the PPs in the same order.
   template <class Chosen>
-  void refill(const Model<D>& model, const Numbers& numbers, FluidParticles<D>& fluid, Chosen&& chosen) {
+  void refill(const Numbers& numbers, FluidParticles<D>& fluid, Chosen&& chosen) {
     for (auto& values : fluid.field) {
       // Whole blocks are read behind the last particle. They are no partners, but 0 times NaN would not be 0.
       const std::size_t count = values.size();
@@ -75,7 +83,7 @@ class PairBlocks {
           x[axis] = load_lanes(fluid.x(axis).data() + i + lane);
           v[axis] = load_lanes(fluid.v(axis).data() + i + lane);
         }
-        lay(model, numbers, block * lanes + lane, x, v, load_lanes(fluid.density().data() + i + lane));
+        lay(numbers, block * lanes + lane, x, v);
       }
       // Lanes of a gap are nobody's partners: they lie far from the plane.
       auto& slow = blocks_[block].x[D - 1];
@@ -88,10 +96,9 @@ class PairBlocks {
   };
   const Held& held(std::uint32_t block) const { return held_[block]; }
 
-  /// The PP at `place`, or as many from there on as there are lanes of the state: what they are, with sums of zero.
+  /// The PP at `place`, or as many from there on as there are lanes of the state: where they are, with sums of zero.
   template <class Wide>
-  MAPPM_INLINE void lay(const Model<D>& model, const Numbers& numbers, std::uint32_t place, const Vec<D, Wide>& x,
-                        const Vec<D, Wide>& v, const Wide& density) {
+  MAPPM_INLINE void lay(const Numbers& numbers, std::uint32_t place, const Vec<D, Wide>& x, const Vec<D, Wide>& v) {
     using Real = typename Numbers::Real;
     const auto zero = lanes_of<Sum>(Wide(0.0));
     Block& block = blocks_[place / lanes];
@@ -102,10 +109,18 @@ class PairBlocks {
       store_lanes(zero, &block.impulse[axis][lane]);
       store_lanes(zero, &block.shift[axis][lane]);
     }
+    store_lanes(zero, &block.shear[lane]);
+    store_lanes(zero, &block.density[lane]);
+  }
+  /// Their volumes and pressures, by their densities (PPs per rcut^D).
+  template <class Wide>
+  MAPPM_INLINE void set_density(const Model<D>& model, std::uint32_t place, const Wide& density) {
+    using Real = typename Numbers::Real;
+    Block& block = blocks_[place / lanes];
+    const std::uint32_t lane = place % lanes;
     const auto volume = volume_terms(density, model.rest_density, 1.0, model.background);
     store_lanes(lanes_of<Real>(volume.v2), &block.v2[lane]);
     store_lanes(lanes_of<Real>(volume.pv2), &block.pv2[lane]);
-    store_lanes(zero, &block.density[lane]);
   }
 
   const Block& operator[](std::uint32_t block) const { return blocks_[block]; }
@@ -119,6 +134,7 @@ class PairBlocks {
       std::ranges::fill(block.impulse[axis], 0);
       std::ranges::fill(block.shift[axis], 0);
     }
+    std::ranges::fill(block.shear, 0);
     std::ranges::fill(block.density, 0);
     result.contributions_.assign(1, 0);
     return result;
@@ -144,23 +160,30 @@ class PairBlocks {
   MAPPM_INLINE void add(std::uint32_t place, const PairResult<D, Sum>& given) {
     Block& block = blocks_[place / lanes];
     const std::uint32_t lane = place % lanes;
-    const auto add_to = [](Sum& sum, Sum more) {
-      sum = static_cast<Sum>(static_cast<Wrapping<Sum>>(sum) + static_cast<Wrapping<Sum>>(more));
-    };
     for (int axis = 0; axis < D; ++axis) {
       add_to(block.impulse[axis][lane], given.impulse[axis]);
       add_to(block.shift[axis][lane], given.shift[axis]);
     }
-    add_to(block.density[lane], given.density);
+    add_to(block.shear[lane], given.shear);
   }
-  /// Tells which blocks the lists will add to, one by one, with the excess of their rounding. Valid until all are
-  /// filled.
+  MAPPM_INLINE void add_density(std::uint32_t place, Sum given) {
+    add_to(blocks_[place / lanes].density[place % lanes], given);
+  }
+  /// Tells which blocks the lists will add to, one by one, with the excess of their rounding, in each of the two passes.
+  /// Valid until all are filled.
   void expect(std::span<const std::uint32_t> blocks) {
     if constexpr (Numbers::ListRounding::excess != 0)
       for (const std::uint32_t block : blocks) ++contributions_[block];
   }
   PairResult<D, Sum> sums(std::uint32_t place) const {
     return sums_of(place, [](const Sum* sum) { return static_cast<Wrapping<Sum>>(*sum); });
+  }
+  /// Sum of densities of the PP at a place, or of as many from there on as there are lanes of the state.
+  Sum density(std::uint32_t place) const {
+    return density_of(place, [](const Sum* sum) { return static_cast<Wrapping<Sum>>(*sum); });
+  }
+  MAPPM_INLINE auto density_of_lanes(std::uint32_t place) const {
+    return density_of(place, [](const Sum* sums) { return lanes_of<Wrapping<Sum>>(load_as_many(sums)); });
   }
   /// Of as many PPs from `place` on as there are lanes of the state.
   MAPPM_INLINE auto sums_of_lanes(std::uint32_t place) const {
@@ -170,19 +193,27 @@ class PairBlocks {
  private:
   static constexpr std::uint32_t lanes = block_lanes<Numbers>;
 
+  MAPPM_INLINE static void add_to(Sum& sum, Sum more) {
+    sum = static_cast<Sum>(static_cast<Wrapping<Sum>>(sum) + static_cast<Wrapping<Sum>>(more));
+  }
+  template <class Load>
+  MAPPM_INLINE auto density_of(std::uint32_t place, Load&& load) const {
+    const auto sum = load(&blocks_[place / lanes].density[place % lanes]);
+    return lanes_of<Sum>(sum - std::decay_t<decltype(sum)>(excess_of(place / lanes)));
+  }
   /// load(from): sums from there on, as numbers that wrap.
   template <class Load>
   MAPPM_INLINE auto sums_of(std::uint32_t place, Load&& load) const {
     const Block& block = blocks_[place / lanes];
     const std::uint32_t lane = place % lanes;
-    using Wide = decltype(load(block.density));
+    using Wide = decltype(load(block.shear));
     const auto excess = Wide(excess_of(place / lanes)), of_shift = shifts_ ? excess : Wide(0);
     PairResult<D, decltype(lanes_of<Sum>(excess))> sums;
     for (int axis = 0; axis < D; ++axis) {  // partners received them with the other sign
       sums.impulse[axis] = lanes_of<Sum>(load(&block.impulse[axis][lane]) + excess);
       sums.shift[axis] = lanes_of<Sum>(load(&block.shift[axis][lane]) + of_shift);
     }
-    sums.density = lanes_of<Sum>(load(&block.density[lane]) - excess);
+    sums.shear = lanes_of<Sum>(load(&block.shear[lane]) - of_shift);
     return sums;
   }
   Wrapping<Sum> excess_of(std::uint32_t block) const {

@@ -26,7 +26,7 @@ Domains<D> domains_by_load(const Model<D>& model, const Domains<D>& domains, con
     auto& bins = profile[static_cast<std::size_t>(axis)];
     bins.assign(profile_bins, 0);
     for (const double x : state.fluid.x(axis)) ++bins[bin_of(wrap_position(x))];
-    for (const Solid<D>& solid : state.solids) bins[bin_of(wrap_position(solid.x[axis]))] += solid.density.size();
+    for (const Solid<D>& solid : state.solids) bins[bin_of(wrap_position(solid.x[axis]))] += model.shapes[solid.shape].frozen.size();
     communicator.sum(std::span(bins));
   }
   return balanced<D>(model, domains, profile);
@@ -53,7 +53,7 @@ void redistribute(const Model<D>& model, const Domains<D>& domains, const Commun
     for (const auto& values : fluid.field) put(buffer, values[i]);
   }
   for (const Solid<D>& solid : state.solids)
-    put_solid(out[static_cast<std::size_t>(domains.owner(solid.x))], solid, solid.x, all_frozen(solid), true);
+    put_solid(out[static_cast<std::size_t>(domains.owner(solid.x))], solid, solid.x, true);
 
   state.fluid.release();
   state.solids.clear();
@@ -68,7 +68,7 @@ void redistribute(const Model<D>& model, const Domains<D>& domains, const Commun
       state.fluid.id[i] = reader.get<std::uint64_t>();
       for (auto& values : state.fluid.field) values[i] = reader.get<double>();
     }
-    while (!reader.at_end()) state.solids.push_back(get_solid(reader, model));
+    while (!reader.at_end()) state.solids.push_back(get_solid<D>(reader));
   }
   std::sort(state.solids.begin(), state.solids.end(), [](const Solid<D>& a, const Solid<D>& b) { return a.id < b.id; });
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <numeric>
 
 #include "physics/fluid_pair.hpp"
 
@@ -56,7 +57,7 @@ void Residents<D>::settle(const FluidParticles<D>& fluid, bool single_step) {
       owned_.push_back(owned ? 1 : 0);
       if (!owned) near_outside_.push_back(place);
     }
-    for (std::size_t n = 0; n < candidates_.size() && !single_step; ++n)
+    for (std::size_t n = 0; n < candidates_.size(); ++n)
       if (may_enter_[n].contains(x)) candidates_[n].push_back({place, near, none});
   }
   near_ = places_.size();
@@ -67,12 +68,15 @@ void Residents<D>::settle(const FluidParticles<D>& fluid, bool single_step) {
   end_ = never;
   ending_ = false;
   staying_ = true;
-  if (single_step) return;
   up_to_date_.assign(places_.size(), 0);
   table_.assign(std::bit_ceil(2 * places_.size() + 1), none);
+  twins_.resize(places_.size());
+  std::iota(twins_.begin(), twins_.end(), 0u);
   for (std::uint32_t n = 0; n < places_.size(); ++n) {
-    const std::uint32_t* slot = slot_of(fluid.id[places_[n]]);
-    while (*slot != none) slot = next(slot);
+    const std::uint64_t id = fluid.id[places_[n]];
+    const std::uint32_t* slot = slot_of(id);
+    for (; *slot != none; slot = next(slot))
+      if (twins_[n] == n && fluid.id[places_[*slot]] == id) std::swap(twins_[n], twins_[*slot]);
     table_[static_cast<std::size_t>(slot - table_.data())] = n;
   }
   for (std::size_t n = 0; n < needed_.size(); ++n) {
@@ -88,8 +92,8 @@ void Residents<D>::settle(const FluidParticles<D>& fluid, bool single_step) {
       candidate.image = *slot;
     }
   }
-  for (auto& sequence : sequences_) sequence.clear();
-  stood_.assign(places_.size(), 0);
+  states_.clear(places_.size());
+  densities_.clear(places_.size());
 }
 
 template <int D>
@@ -132,14 +136,22 @@ const std::uint32_t* Residents<D>::next(const std::uint32_t* slot) const {
 }
 
 template <int D>
+std::vector<std::uint32_t> Residents<D>::others() const {
+  std::vector<std::uint32_t> others(places_.begin() + static_cast<std::ptrdiff_t>(near_), places_.end());
+  for (std::size_t n = 0; n < near_; ++n)
+    if (owned_[n] == 0) others.push_back(places_[n]);
+  return others;
+}
+
+template <int D>
 bool Residents<D>::refresh(FluidParticles<D>& fluid, std::span<BufferReader> readers) {
   std::copy(owned_.begin(), owned_.end(), up_to_date_.begin());
   std::fill(up_to_date_.begin() + static_cast<std::ptrdiff_t>(near_), up_to_date_.end(), 0);
   for (std::size_t n = 0; n < needed_.size(); ++n)
     if (needed_[n].own_shift) refresh_own(fluid, n);
-  sequences_.resize(readers.size());
+  states_.of_messages.resize(readers.size());
   for (std::size_t n = 0; n < readers.size(); ++n)
-    if (!refresh(fluid, readers[n], sequences_[n])) return false;
+    if (!refresh(fluid, readers[n], states_.of_messages[n])) return false;
   if (!lasts()) return false;
   travelled_ += farthest_;
   farthest_ = 0.0;
@@ -197,18 +209,63 @@ bool Residents<D>::refresh(FluidParticles<D>& fluid, BufferReader& reader, std::
         if (noticed_.contains(x)) return false;
         continue;
       }
-      expected = stood_[found];
+      expected = states_.stood[found];
     }
     largest_square = std::max(largest_square, square);
     for (std::size_t f = 0; f < fluid.field.size(); ++f) fluid.field[f][places_[found]] = value(f, k);
     up_to_date_[found] = 1;
     sequence_[k] = found;
-    stood_[found] = static_cast<std::uint32_t>(k);
+    states_.stood[found] = static_cast<std::uint32_t>(k);
     ++expected;
   }
   farthest_ = std::max(farthest_, std::sqrt(largest_square));
   sequence.swap(sequence_);
   return true;
+}
+
+template <int D>
+void Residents<D>::copy_densities(const FluidParticles<D>& fluid, std::span<double> density) const {
+  for (std::size_t n = 0; n < needed_.size(); ++n) {
+    if (!needed_[n].own_shift) continue;
+    for (const Candidate& candidate : candidates_[n])
+      if (candidate.image != none && is_needed(fluid, n, candidate))
+        density[places_[candidate.image]] = density[candidate.place];
+  }
+}
+
+template <int D>
+void Residents<D>::take_densities(const FluidParticles<D>& fluid, std::size_t n, BufferReader& reader,
+                                  std::span<double> density) {
+  const auto count = reader.get<std::uint64_t>();
+  const std::byte* const ids = reader.skip<std::uint64_t>(count);
+  const std::byte* const values = reader.skip<double>(count);
+  if (densities_.of_messages.size() <= n) densities_.of_messages.resize(n + 1);
+  std::vector<std::uint32_t>& sequence = densities_.of_messages[n];
+  sequence_.assign(count, none);
+  std::size_t expected = 0;  // in `sequence`
+  for (std::size_t k = 0; k < count; ++k) {
+    std::uint64_t id;
+    std::memcpy(&id, ids + k * sizeof id, sizeof id);
+    const auto is_that = [&](std::uint32_t at) { return fluid.id[places_[at]] == id; };
+    std::uint32_t found = expected < sequence.size() ? sequence[expected] : none;
+    if (found == none || !is_that(found)) {
+      const std::uint32_t* slot = slot_of(id);
+      while (*slot != none && !is_that(*slot)) slot = next(slot);
+      found = *slot;
+      if (found == none) continue;
+      expected = densities_.stood[found];
+    }
+    double value;
+    std::memcpy(&value, values + k * sizeof value, sizeof value);
+    for (std::uint32_t image = twins_[found];; image = twins_[image]) {
+      density[places_[image]] = value;
+      if (image == found) break;
+    }
+    sequence_[k] = found;
+    densities_.stood[found] = static_cast<std::uint32_t>(k);
+    ++expected;
+  }
+  sequence.swap(sequence_);
 }
 
 template <int D>

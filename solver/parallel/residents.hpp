@@ -68,12 +68,14 @@ class Residents {
 
   /// Starts a stay, which may be one of a single step. `fluid`: all PPs here, in the order that they will keep.
   void settle(const FluidParticles<D>& fluid, bool single_step = false);
-  /// In a stay that lasts: adds those of this process' own PPs that lie in region n of `needed` now.
+  /// Adds those of this process' own PPs that lie in region n of `needed` now.
   void select(const FluidParticles<D>& fluid, std::size_t n, std::vector<std::uint32_t>& chosen) const;
   /// PPs that others own or may come to own, and images of own ones: all those that `refresh` can change.
   std::span<const std::uint32_t> foreign() const { return places_; }
   /// PPs that were outside the region at the start of the stay and may lie in it now.
   std::span<const std::uint32_t> near_outside() const { return near_outside_; }
+  /// PPs that this process does not own in this step.
+  std::vector<std::uint32_t> others() const;
   /// Largest displacement of the own PPs in the step made now, rcut.
   void moved(double farthest) { farthest_ = last_farthest_ = farthest; }
 
@@ -81,6 +83,11 @@ class Residents {
   /// whose readers then stand behind their PPs. False where the stay ends by what they say: some ghosts may be new and
   /// others old, and `leave` is due.
   bool refresh(FluidParticles<D>& fluid, std::span<BufferReader> readers);
+  /// In any step, once ghosts are up to date: gives images of own PPs the density of these.
+  void copy_densities(const FluidParticles<D>& fluid, std::span<double> density) const;
+  /// Gives ghosts the densities in message n: their number, ids, and densities (PPs per rcut^D). All images of a PP have
+  /// its density.
+  void take_densities(const FluidParticles<D>& fluid, std::size_t n, BufferReader& reader, std::span<double> density);
   /// Ends a stay: only what this process owned in the last step remains in `fluid`.
   void leave(FluidParticles<D>& fluid);
 
@@ -123,8 +130,17 @@ class Residents {
   std::vector<std::uint32_t> table_;      // hashed by id: indices into places_
   // A message names much the same PPs as the one before, in the same order: indices into places_ by message, or `none`,
   // and where each of these stood in its message.
-  std::vector<std::vector<std::uint32_t>> sequences_;
-  std::vector<std::uint32_t> stood_, sequence_;
+  struct Sequences {
+    std::vector<std::vector<std::uint32_t>> of_messages;
+    std::vector<std::uint32_t> stood;
+    void clear(std::size_t places) {
+      for (auto& sequence : of_messages) sequence.clear();
+      stood.assign(places, 0);
+    }
+  };
+  Sequences states_, densities_;
+  std::vector<std::uint32_t> sequence_;    // of the message that is read
+  std::vector<std::uint32_t> twins_;       // of each place another image of its PP, in a circle; itself where it is alone
 };
 
 }  // namespace mappm

@@ -7,10 +7,10 @@
 
 namespace mappm {
 
-/// Of a step: messages of PPs; where it is found anew, their order by cells, and the lists of their pairs; pairs of
-/// PPs; pairs of PPs and FPs; FPs, contacts and motion of solids; copies of solids and reports on them, their messages
+/// Of a step: messages of PPs; where it is found anew, their order by cells, and the lists of their pairs;
+/// densities, and forces, of pairs of PPs; both of PPs and FPs; FPs, contacts and motion of solids; copies of solids and reports on them, their messages
 /// included; motion of PPs.
-enum class Phase { exchange, sort, lists, pairs, frozen_pairs, solids, copies, integrate };
+enum class Phase { exchange, sort, lists, densities, pairs, frozen_pairs, solids, copies, integrate };
 
 class Stopwatch {
  public:
@@ -22,7 +22,7 @@ class Stopwatch {
     last_ = now;
   }
   PhaseSeconds seconds() const {
-    constexpr const char* names[] = {"exchange",     "sort",   "lists",  "pairs",
+    constexpr const char* names[] = {"exchange",     "sort",   "lists",  "densities", "pairs",
                                      "frozen_pairs", "solids", "copies", "integrate"};
     PhaseSeconds named;
     for (const char* name : names) named.emplace_back(name, seconds_[named.size()]);
@@ -30,7 +30,7 @@ class Stopwatch {
   }
 
  private:
-  double seconds_[8] = {};
+  double seconds_[9] = {};
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 

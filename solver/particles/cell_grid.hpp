@@ -68,7 +68,7 @@ class CellGrid {
   /// Particles of cell c are [start(c), start(c + 1)) after `sort`.
   std::uint32_t start(std::size_t cell) const { return start_[cell]; }
 
-  /// Orders the particles by cell (counting sort). Field arrays keep `padding` valid entries behind the last particle.
+  /// Orders the particles by cell (counting sort).
   void sort(FluidParticles<D>& fluid) {
     const std::size_t particles = fluid.size();
     target_.resize(particles);

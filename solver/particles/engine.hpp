@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "particles/density_field.hpp"
 #include "particles/pair_trace.hpp"
 #include "particles/state.hpp"
 
@@ -30,6 +31,8 @@ concept Engine = requires(E engine, const E constant) {
   /// What this process owns, valid between steps. May cost some steps' saving: not to be called in each. Bookkeeping of
   /// the series (sampled_impulse) may be changed.
   { engine.state() } -> std::same_as<State<D>&>;
+  /// Collective. The same, with the densities at its positions. The state is valid until the next step.
+  { engine.sample() } -> std::same_as<Sample<D>>;
   /// Empty, or the first value that left its range on this process: step, particle, value and likely cause.
   { constant.range_error() } -> std::convertible_to<std::string>;
   { constant.phase_seconds() } -> std::convertible_to<PhaseSeconds>;

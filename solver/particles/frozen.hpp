@@ -1,9 +1,10 @@
-// The FPs of a step: placed anew from their solids, which carry their state.
+// The FPs of a step: placed anew from their solids.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "particles/density_field.hpp"
 #include "particles/solid_step.hpp"
 #include "physics/state_equation.hpp"
 #include "physics/wall.hpp"
@@ -13,7 +14,8 @@ namespace mappm {
 template <int D>
 struct FrozenInStep {
   PlacedFrozen<D> place;
-  VolumeTerms<double> volume;
+  double density = 0.0;  // PPs per rcut^D, once it is known
+  VolumeTerms<double> volume{};
   double depth = 0.0;
   double own_density = 0.0;
   std::uint32_t solid = 0;  // index in the list of solids it was placed from
@@ -40,9 +42,21 @@ void place_frozen(const Model<D>& model, const SolidInStep<D>& body, std::uint32
   for (std::uint32_t k = 0; k < frozen.size(); ++k) {
     const PlacedFrozen<D> placed = place(*body.solid, body.velocity, frozen[k], model.pair.length);
     if (!region.contains(placed.x)) continue;
-    const VolumeTerms<double> volume = volume_terms(body.solid->density[k], model.rest_density, 1.0, model.background);
-    to.push_back({placed, volume, frozen[k].depth, frozen[k].own_density, solid, k});
+    FrozenInStep<D>& fp = to.emplace_back();
+    fp.place = placed;
+    fp.depth = frozen[k].depth;
+    fp.own_density = frozen[k].own_density;
+    fp.solid = solid;
+    fp.index = k;
   }
+}
+
+/// The share of a solid in the density of its FPs is part of its shape, as is that of the other pieces of a wall. Its
+/// periodic images are other matter: `images` if the two are images of one solid.
+template <int D>
+bool give_each_other_density(const Model<D>& model, const Solid<D>& one, const Solid<D>& other, bool images) {
+  if (one.group != other.group) return true;
+  return images && one.id == other.id && !is_wall_piece(model.shapes[one.shape]);
 }
 
 /// beta of the pairs of one FP, as a function of the separation from it; in one number or in lanes.
@@ -52,7 +66,8 @@ class NoSlipFactor {
   NoSlipFactor(const Model<D>& model, const FrozenInStep<D>& fp)
       : extrapolated_(model.terms.extrapolated),
         depth_(static_cast<Real>(fp.depth)),
-        nearest_(static_cast<Real>(model.no_slip_nearest)) {
+        nearest_(static_cast<Real>(model.no_slip_nearest)),
+        largest_(static_cast<Real>(model.no_slip_largest)) {
     for (int axis = 0; axis < D; ++axis) normal_[axis] = static_cast<Real>(fp.place.normal[axis]);
   }
   template <class Wide>
@@ -60,13 +75,13 @@ class NoSlipFactor {
     if (!extrapolated_) return constant<Wide>(1.0);
     Vec<D, Wide> normal;
     for (int axis = 0; axis < D; ++axis) normal[axis] = Wide(normal_[axis]);
-    return no_slip_factor(r, normal, Wide(depth_), nearest_);
+    return no_slip_factor(r, normal, Wide(depth_), nearest_, largest_);
   }
 
  private:
   bool extrapolated_;
   Vec<D, Real> normal_;
-  Real depth_, nearest_;
+  Real depth_, nearest_, largest_;
 };
 
 /// Adds the impulse that one FP received in a step (iota), and its torque, to those of its solid.
@@ -80,10 +95,15 @@ void add_frozen_load(const FrozenInStep<D>& fp, const Vec<D, std::int64_t>& impu
   to.angular += torque_impulse<D>(fp.place.lever, value);
 }
 
-/// Density of an FP for the next step from the sum over PPs and FPs of other solids (density quanta).
 template <int D>
-double frozen_density(const FrozenInStep<D>& fp, std::int64_t sum) {
-  return static_cast<double>(sum) * density_quantum + fp.own_density;
+FrozenPoint<D> point_of(const FrozenInStep<D>& fp, const Solid<D>& solid) {
+  return {solid.id, fp.index, fp.place.x, fp.place.v, fp.density};
+}
+
+template <int D>
+void set_density(const Model<D>& model, FrozenInStep<D>& fp, double density) {
+  fp.density = density;
+  fp.volume = volume_terms(density, model.rest_density, 1.0, model.background);
 }
 
 }  // namespace mappm

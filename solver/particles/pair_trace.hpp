@@ -16,9 +16,10 @@ struct PartnerTrace {
   std::uint64_t id = 0;     // of the PP, or of the solid
   std::uint32_t index = 0;  // of the FP in its shape
   NeighbourSums<D> given{};
+  std::int64_t density = 0;  // density quanta
 
   bool any() const {
-    return given.density != 0 || !(given.impulse == Vec<D, std::int64_t>{}) || !(given.shift == Vec<D, std::int64_t>{});
+    return density != 0 || !(given.impulse == Vec<D, std::int64_t>{}) || !(given.shift == Vec<D, std::int64_t>{});
   }
 };
 

@@ -53,7 +53,12 @@ std::string finish_step(const Model<D>& model, std::uint64_t step, Solid<D>& sol
 template <int D>
 ParticleStep<D> particle_step(const Model<D>& model, std::uint64_t step);
 
-/// Text for a value out of range: step, particle, value and likely cause.
+/// Text for a density out of range, in units of that at rest: of "particle 7", or of an FP.
+std::string particle_text(std::uint64_t id);
+std::string frozen_text(std::uint64_t solid, std::uint32_t index);
+std::string density_message(std::uint64_t step, const std::string& where, double ratio);
+
+/// Text for another value out of range: step, particle, value and likely cause.
 template <int D>
 std::string range_message(RangeFault fault, std::uint64_t step, std::uint64_t id, const Vec<D, double>& v,
                           const NeighbourSums<D>& sums);

@@ -10,7 +10,6 @@ std::uint64_t solid_hash(const Solid<D>& solid) {
   for (int axis = 0; axis < D; ++axis) hash.add(solid.x[axis]).add(solid.momentum[axis]).add(solid.fluid_impulse[axis]);
   for (const Int128 component : solid.angular_momentum.component) hash.add(component);
   for (const double component : solid.orientation.component.component) hash.add(component);
-  for (const double density : solid.density) hash.add(density);
   for (const Contact<D>& contact : solid.contacts) {
     hash.add(contact.partner).add(std::uint64_t{contact.own} << 32 | contact.other);
     for (const double component : contact.stretch.component) hash.add(component);

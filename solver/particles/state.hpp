@@ -1,5 +1,5 @@
 // The state of a run: the PPs as one table of fields, and the solids. FPs are not stored: a solid and its shape
-// determine where they are; only their densities belong to the state.
+// determine where they are. Densities are not stored: they follow from the positions.
 #pragma once
 
 #include <array>
@@ -23,10 +23,10 @@ void reserve_tightly(Values& values, std::size_t count) {
 
 /// The field table of the PPs: it feeds allocation, halo, output, checkpoint and digest. All values are integers,
 /// kept in doubles that hold them exactly: x in position quanta, v in multiples of velocity_quantum (PP mass 1, so
-/// this is the momentum too), density in multiples of density_quantum.
+/// this is the momentum too).
 template <int D>
 struct FluidParticles {
-  static constexpr int field_count = 2 * D + 1;
+  static constexpr int field_count = 2 * D;
   std::vector<std::uint64_t> id;
   std::array<Column<double>, field_count> field;
 
@@ -34,8 +34,6 @@ struct FluidParticles {
   const Column<double>& x(int axis) const { return field[axis]; }
   Column<double>& v(int axis) { return field[D + axis]; }
   const Column<double>& v(int axis) const { return field[D + axis]; }
-  Column<double>& density() { return field[2 * D]; }
-  const Column<double>& density() const { return field[2 * D]; }
 
   Vec<D, double> position(std::size_t i) const {
     Vec<D, double> position;

@@ -1,10 +1,12 @@
 // The law between two pseudo-particles. It stands here and nowhere else; both engines instantiate it.
 //
+//   rho_ij = W                                                                 density that each gives to the other
 //   F_ij   = G { (p_i V_i^2 + p_j V_j^2) r - beta mu (V_i^2 + V_j^2) v }        momentum that i gains per time
-//   u_ij   = (dt/2) p_s (V_i^2 + V_j^2) G r                                    transport velocity of i
-//   rho_ij = W - dt (-W'/r) r.v                                                density that j gives to i, one step on
+//   u_ij   = kappa c h (V_i^2 + V_j^2) / (2 V_0) G r                           transport velocity of i
+//   s_ij   = (V_i^2 + V_j^2) / (2 V_0) G v^2                                   shear, which limits the transport
 //
-// Every term is symmetric or antisymmetric in i and j to the last bit, and is rounded once to an integer.
+// The densities of both are summed first, at the same positions: pressure is a function of positions alone. Every term
+// is symmetric or antisymmetric in i and j to the last bit, and is rounded once to an integer.
 #pragma once
 
 #include "base/lanes.hpp"
@@ -20,9 +22,9 @@ struct PairLaw {
   Vec<D, Real> length;  // length of one position quantum, per axis
   Real force;           // G scale * dt / iota: profile to impulse quanta
   Real viscosity;       // mu
-  Vec<D, Real> shift;   // impulse quanta of p_s = 1 to displacement in position quanta, per axis
+  Vec<D, Real> shift;   // impulse quanta of a pressure of 1 to displacement in position quanta, per axis
+  Real shear;           // impulse quanta to quanta of the sum of shear
   Real weight;          // W scale / density quantum
-  Real rate;            // -W'/r scale * dt / density quantum
 };
 
 /// What the law reads of one pair. `d` is the exact difference of positions in quanta, i minus j; `v` of velocities.
@@ -33,11 +35,11 @@ struct FluidPair {
   Real pv2;  // p_i V_i^2 + p_j V_j^2
 };
 
-/// What one pair gives to i. To j it gives the impulse and the shift with the other sign, and the same density.
+/// What one pair gives to i. To j it gives the impulse and the shift with the other sign, and the same shear.
 template <int D, class Sum>
 struct PairResult {
   Vec<D, Sum> impulse, shift;
-  Sum density{};
+  Sum shear{};
 };
 
 /// How a pair's contributions become what is summed.
@@ -76,12 +78,17 @@ MAPPM_INLINE Real cut_distance(const Real& square) {
   return smaller(square_root(square), constant<Real>(1.0));
 }
 
+/// The density that two particles at the distance q give each other: two PPs, a PP and an FP, FPs of two solids.
+template <class Kernel, class Rounding = Rounded, int D, class Real>
+MAPPM_INLINE auto pair_density(const PairLaw<D, Scalar<Real>>& law, const Real& q) {
+  return Rounding::of(Kernel::weight(q) * Real(law.weight));
+}
+
 /// `beta` is 1 between PPs and `no_slip_factor` between a PP and an FP.
 template <class Kernel, bool transport, class Rounding = Rounded, int D, class Real>
 MAPPM_INLINE auto fluid_pair(const PairLaw<D, Scalar<Real>>& law, const FluidPair<D, Real>& pair, const Vec<D, Real>& r,
                              const Real& q, const Real& beta) {
-  const KernelProfile<Real> kernel = Kernel::template at<Real>(q);
-  const Real g = kernel.gradient * Real(law.force);
+  const Real g = Kernel::gradient(q) * Real(law.force);
   const Real pressure = g * pair.pv2;
   const Real shifting = g * pair.v2;
   const Real friction = shifting * (beta * Real(law.viscosity));
@@ -90,16 +97,8 @@ MAPPM_INLINE auto fluid_pair(const PairLaw<D, Scalar<Real>>& law, const FluidPai
     result.impulse[axis] = Rounding::of(pressure * r[axis] - friction * pair.v[axis]);
     if constexpr (transport) result.shift[axis] = Rounding::of(shifting * r[axis] * Real(law.shift[axis]));
   }
-  result.density = Rounding::of(kernel.weight * Real(law.weight) - kernel.rate * Real(law.rate) * dot(r, pair.v));
+  if constexpr (transport) result.shear = Rounding::of(shifting * Real(law.shear) * dot(pair.v, pair.v));
   return result;
-}
-
-/// The density that two FPs of different solids give each other: as between PPs, without force.
-template <class Kernel, int D, class Real>
-MAPPM_INLINE Fixed<Real> pair_density(const PairLaw<D, Scalar<Real>>& law, const Vec<D, Real>& r, const Vec<D, Real>& v,
-                                      const Real& q) {
-  const KernelProfile<Real> kernel = Kernel::template at<Real>(q);
-  return to_fixed(kernel.weight * Real(law.weight) - kernel.rate * Real(law.rate) * dot(r, v));
 }
 
 }  // namespace mappm

@@ -1,7 +1,6 @@
-// Smoothing kernels. A kernel of support 1 (the cutoff) is given by three profiles of q = r / rcut:
+// Smoothing kernels. A kernel of support 1 (the cutoff) is given by two profiles of q = r / rcut:
 //   weight(q)    the profile of W, which sums to the density
 //   gradient(q)  the profile of G = -W'(r) / r, which carries every force
-//   rate(q)      -weight'(q) / q, which advances the summed density by the continuity equation
 // They take the pair distance already limited to q <= 1, so that a pair beyond the cutoff contributes exactly zero.
 #pragma once
 
@@ -11,32 +10,36 @@ namespace mappm {
 
 enum class KernelKind { wendland_c2, lucy, mps };
 
-template <class Real>
-struct KernelProfile {
-  Real weight, gradient, rate;
-};
-
-/// Wendland C2 (Wendland 1995): W ~ (1-q)^4 (1+4q), -W'/q = 20 (1-q)^3.
+/// Wendland C2 (Wendland 1995): W ~ (1-q)^4 (1+4q), G ~ (1-q)^3.
 struct WendlandC2 {
   static constexpr const char* name = "wendland-c2";
   static constexpr double self_weight = 1.0;
   template <class Real>
-  MAPPM_INLINE static KernelProfile<Real> at(const Real& q) {
+  MAPPM_INLINE static Real weight(const Real& q) {
     const Real t = constant<Real>(1.0) - q;
-    const Real cube = t * t * t;
-    return {cube * t * (constant<Real>(1.0) + constant<Real>(4.0) * q), cube, constant<Real>(20.0) * cube};
+    const Real square = t * t;
+    return square * square * (constant<Real>(1.0) + constant<Real>(4.0) * q);
+  }
+  template <class Real>
+  MAPPM_INLINE static Real gradient(const Real& q) {
+    const Real t = constant<Real>(1.0) - q;
+    return t * t * t;
   }
 };
 
-/// Lucy (1977): W ~ (1-q)^3 (1+3q), -W'/q = 12 (1-q)^2.
+/// Lucy (1977): W ~ (1-q)^3 (1+3q), G ~ (1-q)^2.
 struct Lucy {
   static constexpr const char* name = "lucy";
   static constexpr double self_weight = 1.0;
   template <class Real>
-  MAPPM_INLINE static KernelProfile<Real> at(const Real& q) {
+  MAPPM_INLINE static Real weight(const Real& q) {
     const Real t = constant<Real>(1.0) - q;
-    const Real square = t * t;
-    return {square * t * (constant<Real>(1.0) + constant<Real>(3.0) * q), square, constant<Real>(12.0) * square};
+    return t * t * t * (constant<Real>(1.0) + constant<Real>(3.0) * q);
+  }
+  template <class Real>
+  MAPPM_INLINE static Real gradient(const Real& q) {
+    const Real t = constant<Real>(1.0) - q;
+    return t * t;
   }
 };
 
@@ -46,24 +49,30 @@ struct MpsWeight {
   static constexpr const char* name = "mps";
   static constexpr double self_weight = 0.0;
   template <class Real>
-  MAPPM_INLINE static KernelProfile<Real> at(const Real& q) {
-    const Real inverse = constant<Real>(1.0) / larger(q, constant<Real>(1e-3));
-    const Real w = inverse - constant<Real>(1.0);
-    // The slope jumps at the cutoff: 1 within, 0 at q = 1.
-    const Real inside = smaller(constant<Real>(1.0), w * constant<Real>(1e30));
-    return {w, w * inverse * inverse, inverse * inverse * inverse * inside};
+  MAPPM_INLINE static Real weight(const Real& q) {
+    return inverse(q) - constant<Real>(1.0);
+  }
+  template <class Real>
+  MAPPM_INLINE static Real gradient(const Real& q) {
+    const Real of_q = inverse(q);
+    return (of_q - constant<Real>(1.0)) * of_q * of_q;
+  }
+
+ private:
+  template <class Real>
+  MAPPM_INLINE static Real inverse(const Real& q) {
+    return constant<Real>(1.0) / larger(q, constant<Real>(1e-3));
   }
 };
 
-/// Factors that turn the profiles into W, G and -W'/r, normalised on the initial lattice (see `normalise`).
+/// Factors that turn the profiles into W and G, normalised on the initial lattice (see `normalise`).
 struct KernelScale {
   double weight = 0.0;    // 1 / rcut^D
   double gradient = 0.0;  // 1 / rcut^(D+2)
-  double rate = 0.0;      // 1 / rcut^(D+2)
 };
 
 /// Factors with which sums over a lattice of the given spacings (in units of rcut, mass 1 per node) are exact:
-/// sum W = number density, and (1/D) sum V r^2 G = 1. Source: design note "physics", pair law.
+/// sum W = number density, and (1/D) sum V r^2 G = 1: consistent in orders 0 and 1.
 template <int D, class Kernel>
 KernelScale normalise(const double (&spacing)[D]) {
   double volume = 1.0;
@@ -85,15 +94,14 @@ KernelScale normalise(const double (&spacing)[D]) {
           square += offset * offset;
         }
         if (square >= 1.0) continue;
-        const auto profile = Kernel::template at<double>(square_root(square));
-        weight_sum += profile.weight;
-        gradient_sum += square * profile.gradient;
+        const double q = square_root(square);
+        weight_sum += Kernel::weight(q);
+        gradient_sum += square * Kernel::gradient(q);
       }
   const double number_density = 1.0 / volume;
   KernelScale scale;
   scale.weight = number_density / weight_sum;
   scale.gradient = D * number_density / gradient_sum;
-  scale.rate = scale.weight;
   return scale;
 }
 

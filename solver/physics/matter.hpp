@@ -54,7 +54,7 @@ class SupportQuadrature {
   template <class Kernel>
   static SupportQuadrature of(Kernel) {
     std::array<double, radii> profile;
-    for (int k = 0; k < radii; ++k) profile[k] = Kernel::template at<double>(radius(k)).weight;
+    for (int k = 0; k < radii; ++k) profile[k] = Kernel::weight(radius(k));
     return SupportQuadrature(profile);
   }
 

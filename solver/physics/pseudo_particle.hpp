@@ -10,12 +10,12 @@
 
 namespace mappm {
 
-/// Sums over the neighbours of one PP in one step, as integers: impulse (iota), shift (position quanta), density
-/// (density quanta, the particle itself not included). Of several PPs where the integers are lanes.
+/// Sums over the neighbours of one PP in the force pass, as integers: impulse (iota), shift (position quanta), shear
+/// (iota c). Of several PPs where the integers are lanes.
 template <int D, class Integer = std::int64_t>
 struct NeighbourSums {
   Vec<D, Integer> impulse, shift;
-  Integer density;
+  Integer shear{};
 };
 
 /// Constants of a step, the same for every PP.
@@ -24,57 +24,61 @@ struct ParticleStep {
   Vec<D, double> drift;          // dt / length of a position quantum: velocity (c) to displacement (quanta)
   Vec<D, double> kick;           // impulse of the body force (c, PP mass 1)
   Vec<D, double> largest_drift;  // `largest_displacement`, in quanta
-  double self_density;
-  double lowest_density, highest_density;
+  double shear;                  // sum of shear (iota c) to the square of the share of the shift that it allows
 };
 
 /// A step of one PP, or of as many as there are lanes, and where it leaves its range (bool, or a mask of lanes).
 template <int D, class Real, class Mask>
 struct ParticleMotion {
   Vec<D, Real> x, v;
-  Real density;
   struct Beyond {
-    Mask impulse{false}, velocity{false}, displacement{false}, density{false};
-    Mask any() const { return impulse || velocity || displacement || density; }
+    Mask impulse{false}, velocity{false}, displacement{false};
+    Mask any() const { return impulse || velocity || displacement; }
   } beyond;
 };
 
-/// v + impulse + kick, x + v dt + shift, density = sum: exact but for the rounding of v dt to a quantum. The position
-/// is not wrapped.
+/// Share of the shift that the shear of the fluid about a PP allows: min(1, a h S / c) with the rate of shear
+/// S^2 = sum (V_i^2 + V_j^2) / (2 V_0) G v^2 / D. A fluid at rest keeps its places, in which its pressure balances.
+template <int D, class Real>
+MAPPM_INLINE Real shift_factor(const Real& shear, const ParticleStep<D>& step) {
+  return smaller(square_root(larger(shear * step.shear, constant<Real>(0.0))), constant<Real>(1.0));
+}
+
+/// v + impulse + kick, x + v dt + shift: exact but for the rounding of v dt and of the limited shift to quanta. Where
+/// the fluid is not sheared there is no shift (`shift_factor`). The position is not wrapped.
 template <int D, class Real>
 MAPPM_INLINE auto motion_of(const Vec<D, Real>& x, const Vec<D, Real>& v, const NeighbourSums<D, Fixed<Real>>& sums,
                             const ParticleStep<D>& step) {
   constexpr double largest_impulse = 0x1p50, largest_velocity = exact_quanta * velocity_quantum;
   ParticleMotion<D, Real, decltype(x[0] < x[0])> motion;
   auto& beyond = motion.beyond;
+  const Real factor = shift_factor(real_of(sums.shear), step);
   for (int axis = 0; axis < D; ++axis) {
     const Real impulse = real_of(sums.impulse[axis]);
     const Real new_v = v[axis] + (impulse * velocity_quantum + step.kick[axis]);
-    const Real moved = real_of(to_fixed(new_v * step.drift[axis])) + real_of(sums.shift[axis]);
+    const Real moved =
+        real_of(to_fixed(new_v * step.drift[axis])) + real_of(to_fixed(factor * real_of(sums.shift[axis])));
     beyond.impulse = beyond.impulse || !(magnitude(impulse) < largest_impulse);
     beyond.velocity = beyond.velocity || !(magnitude(new_v) < largest_velocity);
     beyond.displacement = beyond.displacement || !(magnitude(moved) <= step.largest_drift[axis]);
     motion.v[axis] = new_v;
     motion.x[axis] = x[axis] + moved;
   }
-  motion.density = real_of(sums.density) * density_quantum + step.self_density;
-  beyond.density = !(motion.density >= step.lowest_density && motion.density <= step.highest_density);
   return motion;
 }
 
 /// Moves one PP. On a fault nothing is changed.
 template <int D>
-MAPPM_INLINE RangeFault advance(Vec<D, double>& x, Vec<D, double>& v, double& density, const NeighbourSums<D>& sums,
+MAPPM_INLINE RangeFault advance(Vec<D, double>& x, Vec<D, double>& v, const NeighbourSums<D>& sums,
                                 const ParticleStep<D>& step) {
   const auto motion = motion_of(x, v, sums, step);
   if (motion.beyond.any()) [[unlikely]] {
     if (motion.beyond.impulse) return RangeFault::impulse;
     if (motion.beyond.velocity) return RangeFault::velocity;
-    return motion.beyond.displacement ? RangeFault::displacement : RangeFault::density;
+    return RangeFault::displacement;
   }
   x = motion.x;
   v = motion.v;
-  density = motion.density;
   return RangeFault::none;
 }
 

@@ -3,7 +3,7 @@
 
 namespace mappm {
 
-enum class RangeFault { none, impulse, velocity, displacement, density };
+enum class RangeFault { none, impulse, velocity, displacement };
 
 /// A particle, or any point of a solid, may move at most this far in one step, rcut: halos rely on it.
 inline constexpr double largest_displacement = 0.25;

@@ -41,6 +41,12 @@ struct Shape {
   Vec<D == 2 ? 1 : 9, double> inverse_inertia;
 };
 
+/// A piece of a wall, not a body of balls.
+template <int D>
+bool is_wall_piece(const Shape<D>& shape) {
+  return shape.balls.empty();
+}
+
 /// A contact between ball `own` of this SP and ball `other` of SP (or wall plane) `partner`.
 template <int D>
 struct Contact {
@@ -64,7 +70,6 @@ struct Solid {
   Rotation<D> orientation;
   Vec<D, Int128> fluid_impulse{};    // received from the fluid since the start, iota
   Vec<D, Int128> sampled_impulse{};  // fluid_impulse at the last sample: bookkeeping of the series, not in the digest
-  std::vector<double> density;       // of its FPs, one an FP: integer multiples of the density quantum
   std::vector<Contact<D>> contacts;  // sorted by (partner, own, other)
 };
 

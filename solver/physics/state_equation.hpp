@@ -3,6 +3,10 @@
 
 #include <cmath>
 
+#include "base/fixed_point.hpp"
+#include "base/lanes.hpp"
+#include "physics/range_fault.hpp"
+
 namespace mappm {
 
 /// p = c^2 (rho - rho0) + p_b
@@ -23,6 +27,18 @@ template <class Real>
 struct VolumeTerms {
   Real v2, pv2;
 };
+
+/// Density of a particle (PPs per rcut^D) from the sum over its neighbours (density quanta) and what it has of itself:
+/// W(0) of a PP, the share of its own solid of an FP.
+template <class Integer>
+MAPPM_INLINE auto summed_density(const Integer& sum, double own) {
+  return real_of(sum) * density_quantum + own;
+}
+
+/// Whether a density can be told from a fluid that tears or collapses.
+inline bool is_in_range(double rho, double rho0) {
+  return rho >= lowest_density_ratio * rho0 && rho <= highest_density_ratio * rho0;
+}
 
 template <class Real>
 VolumeTerms<Real> volume_terms(const Real& rho, double rho0, double c, double background) {

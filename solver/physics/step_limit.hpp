@@ -15,7 +15,7 @@ struct StepLimits {
 /// the duration of the shortest contact. Above 0.7 h/c drags are wrong by 25 % without any sign of it.
 inline StepLimits step_limits(double h, double c, double nu, double g, double contact_duration) {
   const double never = HUGE_VAL;
-  return {0.25 * h / c, nu > 0.0 ? 0.125 * h * h / nu : never, g > 0.0 ? 0.25 * std::sqrt(h / g) : never,
+  return {1.0 * h / c, nu > 0.0 ? 0.18 * h * h / nu : never, g > 0.0 ? 0.25 * std::sqrt(h / g) : never,
           contact_duration > 0.0 ? 0.05 * contact_duration : never};
 }
 

@@ -159,8 +159,8 @@ StepLimits find_limits(const Scene& scene, const Model<D>& model, const Matter& 
   return limits;
 }
 
-/// Constants of the pair law; they carry the step. shift: u dt with u = (dt/2) p_s (V_i^2 + V_j^2) G r, of which the
-/// law has G dt / iota already.
+/// Constants of the pair law; they carry the step. shift: u dt with u = kappa c h (V_i^2 + V_j^2) / (2 V_0) G r, of which
+/// the law has G dt / iota already.
 template <int D>
 void fold_pair_law(const Scene& scene, const Lattice<D>& lattice, Model<D>& model) {
   double spacing[D];
@@ -170,12 +170,17 @@ void fold_pair_law(const Scene& scene, const Lattice<D>& lattice, Model<D>& mode
     const KernelScale scale = normalise<D, Kernel>(spacing);
     model.pair.force = scale.gradient * model.dt / velocity_quantum;
     model.pair.weight = scale.weight / density_quantum;
-    model.pair.rate = scale.rate * model.dt / density_quantum;
     model.self_density = round_to_quantum(Kernel::self_weight * scale.weight, density_quantum);
   });
-  const double shift_pressure = scene.fluid.shift_pressure * model.rest_density;
+  constexpr double h = 0.5;
+  const double doubled_volume = 2.0 / model.rest_density;
   for (int axis = 0; axis < D; ++axis)
-    model.pair.shift[axis] = 0.5 * model.dt * shift_pressure * velocity_quantum / model.pair.length[axis];
+    model.pair.shift[axis] =
+        scene.fluid.shift_rate * h / doubled_volume * velocity_quantum / model.pair.length[axis];
+  model.pair.shear = 1.0;
+  const double reach = scene.fluid.shift_shear * h;
+  model.shift_shear = reach * reach * velocity_quantum / (D * doubled_volume * model.dt);
+  model.no_slip_largest = scene.fluid.largest_no_slip;
   const UnitScale& units = model.units;
   model.pair.viscosity =
       scene.fluid.viscosity / scene.fluid.density * model.rest_density / (units.length * units.velocity);

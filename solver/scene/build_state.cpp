@@ -56,7 +56,6 @@ void fill_fluid(const Scene& scene, const Model<D>& model, const Lattice<D>& lat
   NodeSet held(carving && scene.fluid.disorder ? carving->nearer_than(model.spacing, range)
                                                : std::vector<std::uint64_t>{});
   const InitialVelocity<D> velocity(scene.fluid, model.units);
-  const double density = round_to_quantum(model.rest_density, density_quantum);
   fluid.resize(range.size() - removed.size());
   std::size_t particle = 0;
   std::array<std::uint64_t, D> node = range.first;
@@ -73,7 +72,7 @@ void fill_fluid(const Scene& scene, const Model<D>& model, const Lattice<D>& lat
         fluid.x(axis)[particle] = x[axis];
         fluid.v(axis)[particle] = v[axis];
       }
-      fluid.density()[particle++] = density;
+      ++particle;
     }
     ++node[0];
     for (int axis = 0; axis + 1 < D && node[axis] == range.last[axis]; ++axis) {
@@ -133,7 +132,6 @@ Solid<D> make_solid(const Scene& scene, const Model<D>& model, const PlacedSolid
     for (int i = 0; i < angular_components<D>; ++i)
       solid.angular_momentum[i] = to_fixed_wide(momentum[i] / velocity_quantum);
   }
-  solid.density.assign(shape.frozen.size(), round_to_quantum(model.rest_density, density_quantum));
   return solid;
 }
 

@@ -61,9 +61,14 @@ void read_fluid_law(const Fields& table, FluidScene& fluid) {
                                        classic ? NoSlip::plain : NoSlip::extrapolated);
   fluid.transport = table.flag("transport", !classic);
   fluid.background_pressure = table.number("background_pressure", Quantity::plain, Sign::not_negative, 0.0);
-  fluid.shift_pressure = table.number("shift_pressure", Quantity::plain, Sign::positive, 1.0);
-  if (!fluid.transport && table.has("shift_pressure"))
-    table.fail("shift_pressure", "acts with transport = true only; remove it");
+  fluid.shift_rate = table.number("shift_rate", Quantity::plain, Sign::positive, fluid.shift_rate);
+  fluid.shift_shear = table.number("shift_shear", Quantity::plain, Sign::positive, fluid.shift_shear);
+  for (const char* key : {"shift_rate", "shift_shear"})
+    if (!fluid.transport && table.has(key)) table.fail(key, "acts with transport = true only; remove it");
+  fluid.largest_no_slip = table.number("largest_no_slip", Quantity::plain, Sign::positive, fluid.largest_no_slip);
+  if (fluid.largest_no_slip < 1.0) table.fail("largest_no_slip", "must be at least 1, the factor of a plain wall");
+  if (fluid.no_slip != NoSlip::extrapolated && table.has("largest_no_slip"))
+    table.fail("largest_no_slip", "acts with no_slip = \"extrapolated\" only; remove it");
   fluid.precision = table.choice<Precision>("precision", {{"double", Precision::full}, {"single", Precision::single}},
                                             fluid.precision);
 }

@@ -39,6 +39,13 @@ Vec<D, double> wrapped(Vec<D, double> x) {
   return x;
 }
 
+/// What two particles give to the density of each other, density quanta.
+template <class Kernel, class Numbers, int D>
+std::int64_t density_between(const Numbers& numbers, const PairPoint<D>& i, const PairPoint<D>& j) {
+  const auto r = separation(numbers.law(), pair_of(numbers, i, j, nearest_difference).d);
+  return numbers.density(pair_density<Kernel>(numbers.law(), cut_distance(dot(r, r))));
+}
+
 /// A region that holds every FP wherever its solid is: a solid reaches at most half a box beyond its centre.
 template <int D>
 Region<D> everywhere() {
@@ -61,13 +68,15 @@ SerialEngine<D>::SerialEngine(const Model<D>& model, State<D>&& state, Neighbour
 
 /// One step of the method:
 ///   1. place the FPs of every solid and find neighbours,
-///   2. sum the pair law over the neighbours of every PP; an FP receives the opposite impulse,
-///   3. kick and drift the PPs; sum the impulses of the FPs onto their solids, add contacts, kick and drift these.
+///   2. sum the density of every PP and FP,
+///   3. sum the pair law over the neighbours of every PP; an FP receives the opposite impulse,
+///   4. kick and drift the PPs; sum the impulses of the FPs onto their solids, add contacts, kick and drift these.
 template <int D>
 void SerialEngine<D>::step() {
   const double start = seconds_now();
   place_solids();
   find_neighbours();
+  sum_densities();
   sums_.assign(state_.fluid.size(), {});
   frozen_sums_.assign(frozen_.size(), {});
   with_pair_numbers(model_,
@@ -76,7 +85,6 @@ void SerialEngine<D>::step() {
                         sum_over_fluid<Kernel, transport>(numbers, i);
                         sum_over_frozen<Kernel, transport>(numbers, i);
                       }
-                      sum_frozen_densities<Kernel>();
                     });
   const double summed = seconds_now();
   trace_partners();
@@ -85,6 +93,16 @@ void SerialEngine<D>::step() {
   ++state_.step;
   pair_seconds_ += summed - start;
   integrate_seconds_ += seconds_now() - summed;
+}
+
+template <int D>
+Sample<D> SerialEngine<D>::sample() {
+  place_solids();
+  find_neighbours();
+  sum_densities();
+  Sample<D> sample{state_, {density_, {}}};
+  for (const FrozenInStep<D>& fp : frozen_) sample.density.frozen.push_back(point_of(fp, state_.solids[fp.solid]));
+  return sample;
 }
 
 template <int D>
@@ -100,24 +118,86 @@ void SerialEngine<D>::place_solids() {
 
 template <int D>
 void SerialEngine<D>::find_neighbours() {
-  const FluidParticles<D>& fluid = state_.fluid;
   fluid_cells_.clear();
-  volume_.resize(fluid.size());
-  for (std::size_t i = 0; i < fluid.size(); ++i) {
-    fluid_cells_.add(position(fluid, i));
-    volume_[i] = volume_terms(fluid.density()[i], model_.rest_density, 1.0, model_.background);
-  }
+  for (std::size_t i = 0; i < state_.fluid.size(); ++i) fluid_cells_.add(position(state_.fluid, i));
   frozen_cells_.clear();
-  for (FrozenInStep<D>& fp : frozen_) {
-    fp.place.x = wrapped(fp.place.x);
-    frozen_cells_.add(fp.place.x);
+  frozen_x_.clear();
+  for (const FrozenInStep<D>& fp : frozen_) {
+    frozen_x_.push_back(wrapped(fp.place.x));
+    frozen_cells_.add(frozen_x_.back());
   }
+}
+
+/// Pressure and volume of every PP and FP, by the density that its neighbours give it.
+template <int D>
+void SerialEngine<D>::sum_densities() {
+  const FluidParticles<D>& fluid = state_.fluid;
+  density_.resize(fluid.size());
+  volume_.resize(fluid.size());
+  frozen_density_sums_.assign(frozen_.size(), 0);
+  with_pair_numbers(model_, [&]<class Kernel>(Kernel, auto, const auto& numbers) {
+    for (std::size_t i = 0; i < fluid.size(); ++i)
+      density_[i] = summed_density(density_of_fluid<Kernel>(numbers, i), model_.self_density);
+    for (std::size_t k = 0; k < frozen_.size(); ++k)
+      set_density(model_, frozen_[k], summed_density(density_of_frozen<Kernel>(k), frozen_[k].own_density));
+  });
+  for (std::size_t i = 0; i < fluid.size(); ++i) {
+    volume_[i] = volume_terms(density_[i], model_.rest_density, 1.0, model_.background);
+    if (!is_in_range(density_[i], model_.rest_density))
+      note(density_message(state_.step, particle_text(fluid.id[i]), density_[i] / model_.rest_density));
+  }
+  for (const FrozenInStep<D>& fp : frozen_)
+    if (!is_in_range(fp.density, model_.rest_density))
+      note(density_message(state_.step, frozen_text(state_.solids[fp.solid].id, fp.index),
+                           fp.density / model_.rest_density));
+}
+
+/// What other PPs and the FPs give to the density of PP i; an FP gets as much from the PP.
+template <int D>
+template <class Kernel, class Numbers>
+std::int64_t SerialEngine<D>::density_of_fluid(const Numbers& numbers, std::size_t i) {
+  const PairPoint<D> one = point(i);
+  std::int64_t sum = 0;
+  fluid_cells_.for_each_near(one.x, [&](int neighbour) {
+    const auto j = static_cast<std::size_t>(neighbour);
+    if (j != i) sum += density_between<Kernel>(numbers, one, point(j));
+  });
+  frozen_cells_.for_each_near(one.x, [&](int neighbour) {
+    const auto k = static_cast<std::size_t>(neighbour);
+    const std::int64_t given = density_between<Kernel>(numbers, one, frozen_point(k));
+    sum += given;
+    frozen_density_sums_[k] += given;
+  });
+  return sum;
+}
+
+/// What PPs, other solids and images of its own one give to the density of FP k.
+template <int D>
+template <class Kernel>
+std::int64_t SerialEngine<D>::density_of_frozen(std::size_t k) {
+  const FrozenInStep<D>& fp = frozen_[k];
+  std::int64_t sum = frozen_density_sums_[k];
+  frozen_cells_.for_each_near(frozen_x_[k], [&](int neighbour) {
+    const auto n = static_cast<std::size_t>(neighbour);
+    const FrozenInStep<D>& other = frozen_[n];
+    const Vec<D, double> d = nearest_vector(frozen_x_[k], frozen_x_[n]);
+    const bool images = !(d == fp.place.x - other.place.x);
+    if (!give_each_other_density(model_, state_.solids[fp.solid], state_.solids[other.solid], images)) return;
+    const Vec<D, double> r = separation(model_.pair, d);
+    sum += pair_density<Kernel>(model_.pair, cut_distance(dot(r, r)));
+  });
+  return sum;
 }
 
 /// PP i as a pair reads it.
 template <int D>
 PairPoint<D> SerialEngine<D>::point(std::size_t i) const {
   return {position(state_.fluid, i), velocity(state_.fluid, i), volume_[i]};
+}
+
+template <int D>
+PairPoint<D> SerialEngine<D>::frozen_point(std::size_t k) const {
+  return {frozen_x_[k], frozen_[k].place.v, frozen_[k].volume};
 }
 
 /// Calls visit(j, given) with what PP j gives to PP i.
@@ -144,7 +224,7 @@ void SerialEngine<D>::for_each_frozen_partner(const Numbers& numbers, std::size_
     const auto k = static_cast<std::size_t>(neighbour);
     const FrozenInStep<D>& fp = frozen_[k];
     const NoSlipFactor<D, typename Numbers::Real> beta(model_, fp);
-    const auto pair = pair_of(numbers, one, {fp.place.x, fp.place.v, fp.volume}, nearest_difference);
+    const auto pair = pair_of(numbers, one, frozen_point(k), nearest_difference);
     const auto r = separation(numbers.law(), pair.d);
     visit(k, numbers.sums(fluid_pair<Kernel, transport>(numbers.law(), pair, r, cut_distance(dot(r, r)), beta(r))));
   });
@@ -157,7 +237,7 @@ void SerialEngine<D>::sum_over_fluid(const Numbers& numbers, std::size_t i) {
   for_each_fluid_partner<Kernel, transport>(numbers, i, [&](std::size_t, const NeighbourSums<D>& given) {
     sums.impulse += given.impulse;
     sums.shift += given.shift;
-    sums.density += given.density;
+    sums.shear += given.shear;
   });
 }
 
@@ -168,9 +248,8 @@ void SerialEngine<D>::sum_over_frozen(const Numbers& numbers, std::size_t i) {
   for_each_frozen_partner<Kernel, transport>(numbers, i, [&](std::size_t k, const NeighbourSums<D>& given) {
     sums.impulse += given.impulse;
     sums.shift += given.shift;
-    sums.density += given.density;
+    sums.shear += given.shear;
     frozen_sums_[k].impulse -= given.impulse;
-    frozen_sums_[k].density += given.density;
   });
 }
 
@@ -185,34 +264,20 @@ void SerialEngine<D>::trace_partners() {
   traced_particle_.reset();
   if (i == ids.size()) return;
   trace_ = empty;
-  const auto keep = [&](bool is_frozen, std::uint64_t id, std::uint32_t index, const NeighbourSums<D>& given) {
-    const PartnerTrace<D> partner{is_frozen, id, index, given};
+  const auto keep = [&](const PartnerTrace<D>& partner) {
     if (partner.any()) trace_->partners.push_back(partner);
   };
   with_pair_numbers(model_,
                     [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>, const auto& numbers) {
-                      for_each_fluid_partner<Kernel, transport>(
-                          numbers, i, [&](std::size_t j, const auto& given) { keep(false, ids[j], 0, given); });
+                      const PairPoint<D> one = point(i);
+                      for_each_fluid_partner<Kernel, transport>(numbers, i, [&](std::size_t j, const auto& given) {
+                        keep({false, ids[j], 0, given, density_between<Kernel>(numbers, one, point(j))});
+                      });
                       for_each_frozen_partner<Kernel, transport>(numbers, i, [&](std::size_t k, const auto& given) {
-                        keep(true, state_.solids[frozen_[k].solid].id, frozen_[k].index, given);
+                        keep({true, state_.solids[frozen_[k].solid].id, frozen_[k].index, given,
+                              density_between<Kernel>(numbers, one, frozen_point(k))});
                       });
                     });
-}
-
-/// An FP also counts the matter of other solids near it; its own solid's share is part of its shape.
-template <int D>
-template <class Kernel>
-void SerialEngine<D>::sum_frozen_densities() {
-  for (std::size_t k = 0; k < frozen_.size(); ++k) {
-    const FrozenInStep<D>& fp = frozen_[k];
-    frozen_cells_.for_each_near(fp.place.x, [&](int neighbour) {
-      const FrozenInStep<D>& other = frozen_[static_cast<std::size_t>(neighbour)];
-      if (state_.solids[fp.solid].group == state_.solids[other.solid].group) return;
-      const Vec<D, double> r = separation(model_.pair, nearest_vector(fp.place.x, other.place.x));
-      frozen_sums_[k].density +=
-          pair_density<Kernel>(model_.pair, r, fp.place.v - other.place.v, cut_distance(dot(r, r)));
-    });
-  }
 }
 
 template <int D>
@@ -229,9 +294,8 @@ void SerialEngine<D>::move_fluid() {
   });
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     Vec<D, double> x = position(fluid, i), v = velocity(fluid, i);
-    const RangeFault fault = advance(x, v, fluid.density()[i], sums_[i], constants);
-    if (fault != RangeFault::none && range_error_.empty())
-      range_error_ = range_message(fault, state_.step, fluid.id[i], v, sums_[i]);
+    const RangeFault fault = advance(x, v, sums_[i], constants);
+    if (fault != RangeFault::none) note(range_message(fault, state_.step, fluid.id[i], v, sums_[i]));
     for (int axis = 0; axis < D; ++axis) {
       fluid.x(axis)[i] = wrap_position(x[axis]);
       fluid.v(axis)[i] = v[axis];
@@ -246,7 +310,6 @@ void SerialEngine<D>::move_solids() {
   for (std::size_t k = 0; k < frozen_.size(); ++k) {
     const FrozenInStep<D>& fp = frozen_[k];
     add_frozen_load(fp, frozen_sums_[k].impulse, loads[fp.solid].fluid);
-    state_.solids[fp.solid].density[fp.index] = frozen_density(fp, frozen_sums_[k].density);
   }
   if (model_.terms.contact)
     for (std::size_t a = 0; a < bodies_.size(); ++a) {
@@ -255,9 +318,7 @@ void SerialEngine<D>::move_solids() {
       add_face_contacts(model_, bodies_[a], loads[a]);
     }
   for (std::size_t a = 0; a < state_.solids.size(); ++a) {
-    const std::string fault =
-        finish_step(model_, state_.step, state_.solids[a], std::move(loads[a]), state_.outside_impulse);
-    if (range_error_.empty()) range_error_ = fault;
+    note(finish_step(model_, state_.step, state_.solids[a], std::move(loads[a]), state_.outside_impulse));
   }
 }
 

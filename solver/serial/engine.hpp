@@ -21,6 +21,7 @@ class SerialEngine {
   void step();
   std::uint64_t present_step() const { return state_.step; }
   State<D>& state() { return state_; }
+  Sample<D> sample();
   const std::string& range_error() const { return range_error_; }
   void trace_next_step(std::uint64_t particle) { traced_particle_ = particle; }
   const MaybeTrace<D>& last_trace() const { return trace_; }
@@ -29,7 +30,16 @@ class SerialEngine {
  private:
   void place_solids();
   void find_neighbours();
+  void sum_densities();
+  template <class Kernel, class Numbers>
+  std::int64_t density_of_fluid(const Numbers& numbers, std::size_t i);
+  template <class Kernel>
+  std::int64_t density_of_frozen(std::size_t k);
+  void note(const std::string& fault) {
+    if (range_error_.empty()) range_error_ = fault;
+  }
   PairPoint<D> point(std::size_t i) const;
+  PairPoint<D> frozen_point(std::size_t k) const;
   template <class Kernel, bool transport, class Numbers, class Visit>
   void for_each_fluid_partner(const Numbers& numbers, std::size_t i, Visit&& visit) const;
   template <class Kernel, bool transport, class Numbers, class Visit>
@@ -39,8 +49,6 @@ class SerialEngine {
   template <class Kernel, bool transport, class Numbers>
   void sum_over_frozen(const Numbers& numbers, std::size_t i);
   void trace_partners();
-  template <class Kernel>
-  void sum_frozen_densities();
   void move_fluid();
   void move_solids();
 
@@ -49,10 +57,13 @@ class SerialEngine {
   NeighbourSearch<D> fluid_cells_, frozen_cells_;
 
   // Of the present step:
+  std::vector<double> density_;              // of the PPs
   std::vector<VolumeTerms<double>> volume_;  // of the PPs
   std::vector<NeighbourSums<D>> sums_;       // of the PPs
   std::vector<SolidInStep<D>> bodies_;
   std::vector<FrozenInStep<D>> frozen_;
+  std::vector<Vec<D, double>> frozen_x_;  // in the box
+  std::vector<std::int64_t> frozen_density_sums_;
   std::vector<NeighbourSums<D>> frozen_sums_;
 
   std::optional<std::uint64_t> traced_particle_;  // in the next step
