@@ -123,9 +123,10 @@ template <int D>
 AngularVec<D, Int128> stress_couple(double viscosity, const Shape<D>& shape, const AngularVec<D, double>& omega,
                                     double dt);
 
-/// Kick and drift of one solid over `dt` (internal units): momentum first, then position by the new velocity.
-/// A fixed solid keeps all, a moving one drifts with its constant momentum. Positions are wrapped into the box. A solid
-/// any point of which would move more than `largest_displacement` is left as it was: RangeFault::displacement.
+/// Kick and drift of one solid over `dt` (internal units): momentum first, then position by the new velocity and
+/// orientation by the angular velocity at the middle of the step, which keeps the energy of free rotation. A fixed
+/// solid keeps all, a moving one drifts with its constant momentum. Positions are wrapped into the box. A solid any
+/// point of which would move more than `largest_displacement` is left as it was: RangeFault::displacement.
 template <int D>
 RangeFault advance(Solid<D>& solid, const Shape<D>& shape, const SolidImpulse<D>& impulse, double dt,
                    const Vec<D, double>& length);
