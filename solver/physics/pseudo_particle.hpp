@@ -24,7 +24,7 @@ struct ParticleStep {
   Vec<D, double> drift;          // dt / length of a position quantum: velocity (c) to displacement (quanta)
   Vec<D, double> kick;           // impulse of the body force (c, PP mass 1)
   Vec<D, double> largest_drift;  // `largest_displacement`, in quanta
-  double shear;                  // sum of shear (iota c) to the square of the share of the shift that it allows
+  double shear;                  // sum of shear (iota c) to the share of the shift that it allows
 };
 
 /// A step of one PP, or of as many as there are lanes, and where it leaves its range (bool, or a mask of lanes).
@@ -37,11 +37,13 @@ struct ParticleMotion {
   } beyond;
 };
 
-/// Share of the shift that the shear of the fluid about a PP allows: min(1, a h S / c) with the rate of shear
-/// S^2 = sum (V_i^2 + V_j^2) / (2 V_0) G v^2 / D. A fluid at rest keeps its places, in which its pressure balances.
+/// Share of the shift that the shear of the fluid about a PP allows: min(1, (a h S / c)^2) with the rate of shear
+/// S^2 = sum (V_i^2 + V_j^2) / (2 V_0) G v^2 / D. The shift moves PPs where their lattice is even, the pressure where
+/// the density is at rest. At a wall these are two places, and a fluid that shifts all the time never comes to rest
+/// there. In proportion to S the shift would still keep the shear alive that allows it; by its square it dies out.
 template <int D, class Real>
 MAPPM_INLINE Real shift_factor(const Real& shear, const ParticleStep<D>& step) {
-  return smaller(square_root(larger(shear * step.shear, constant<Real>(0.0))), constant<Real>(1.0));
+  return smaller(larger(shear * step.shear, constant<Real>(0.0)), constant<Real>(1.0));
 }
 
 /// v + impulse + kick, x + v dt + shift: exact but for the rounding of v dt and of the limited shift to quanta. Where
