@@ -3,7 +3,7 @@
 //   rho_ij = W                                                                 density that each gives to the other
 //   F_ij   = G { (p_i V_i^2 + p_j V_j^2) r - beta mu (V_i^2 + V_j^2) v }        momentum that i gains per time
 //   u_ij   = kappa c h (V_i^2 + V_j^2) / (2 V_0) G r                           transport velocity of i
-//   s_ij   = (V_i^2 + V_j^2) / (2 V_0) G v^2                                   shear, which limits the transport
+//   w_ij   = (V_i^2 + V_j^2) / (2 V_0) G r x v                                 vorticity, which limits the transport
 //
 // The densities of both are summed first, at the same positions: pressure is a function of positions alone. Every term
 // is symmetric or antisymmetric in i and j to the last bit, and is rounded once to an integer.
@@ -23,7 +23,6 @@ struct PairLaw {
   Real force;           // G scale * dt / iota: profile to impulse quanta
   Real viscosity;       // mu
   Vec<D, Real> shift;   // impulse quanta of a pressure of 1 to displacement in position quanta, per axis
-  Real shear;           // impulse quanta to quanta of the sum of shear
   Real weight;          // W scale / density quantum
 };
 
@@ -35,11 +34,11 @@ struct FluidPair {
   Real pv2;  // p_i V_i^2 + p_j V_j^2
 };
 
-/// What one pair gives to i. To j it gives the impulse and the shift with the other sign, and the same shear.
+/// What one pair gives to i. To j it gives the impulse and the shift with the other sign, and the same vorticity.
 template <int D, class Sum>
 struct PairResult {
   Vec<D, Sum> impulse, shift;
-  Sum shear{};
+  AngularVec<D, Sum> vorticity;
 };
 
 /// How a pair's contributions become what is summed.
@@ -97,7 +96,10 @@ MAPPM_INLINE auto fluid_pair(const PairLaw<D, Scalar<Real>>& law, const FluidPai
     result.impulse[axis] = Rounding::of(pressure * r[axis] - friction * pair.v[axis]);
     if constexpr (transport) result.shift[axis] = Rounding::of(shifting * r[axis] * Real(law.shift[axis]));
   }
-  if constexpr (transport) result.shear = Rounding::of(shifting * Real(law.shear) * dot(pair.v, pair.v));
+  if constexpr (transport) {
+    const AngularVec<D, Real> turning = cross<D, Real>(r, pair.v);
+    for (int k = 0; k < angular_components<D>; ++k) result.vorticity[k] = Rounding::of(shifting * turning[k]);
+  }
   return result;
 }
 

@@ -54,7 +54,7 @@ class DoublePairs {
   /// Sums of one PP, or of lanes, in quanta of the state.
   template <class Integer>
   MAPPM_INLINE NeighbourSums<D, Integer> sums(const PairResult<D, Integer>& given) const {
-    return {given.impulse, given.shift, given.shear};
+    return {given.impulse, given.shift, given.vorticity};
   }
   /// A sum of densities, in quanta of the state.
   template <class Integer>
@@ -91,7 +91,6 @@ class SinglePairs {
     law_.force = static_cast<float>(law.force / impulse_);
     law_.viscosity = static_cast<float>(law.viscosity);
     law_.weight = static_cast<float>(law.weight / density_);
-    law_.shear = static_cast<float>(law.shear * impulse_ / shear_);
   }
 
   const PairLaw<D, float>& law() const { return law_; }
@@ -112,13 +111,14 @@ class SinglePairs {
   template <class Integer>
   MAPPM_INLINE auto sums(const PairResult<D, Integer>& given) const {
     const auto widened = [](const Integer& sum) { return lanes_of<std::int64_t>(sum); };
-    using Wide = decltype(widened(given.shear));
+    using Wide = decltype(widened(given.impulse[0]));
     NeighbourSums<D, Wide> sums;
     for (int axis = 0; axis < D; ++axis) {
       sums.impulse[axis] = widened(given.impulse[axis]) * Wide(static_cast<std::int64_t>(impulse_));
       sums.shift[axis] = widened(given.shift[axis]) * Wide(static_cast<std::int64_t>(place_[axis]));
     }
-    sums.shear = widened(given.shear) * Wide(static_cast<std::int64_t>(shear_));
+    for (int k = 0; k < angular_components<D>; ++k)
+      sums.vorticity[k] = widened(given.vorticity[k]) * Wide(static_cast<std::int64_t>(impulse_));
     return sums;
   }
   template <class Integer>
@@ -129,10 +129,9 @@ class SinglePairs {
 
  private:
   /// Quanta of the state in one of the law. Sums count modulo 2^32 of these: an impulse modulo 64 m c, a shift modulo
-  /// 8 rcut or more, a density modulo 80 times that at rest or more, shear modulo 1 m c^2. A particle that receives too much for a step
+  /// 8 rcut or more, a density modulo 80 times that at rest or more. A particle that receives too much for a step
   /// (`advance`) but less than all of that is found as in double precision.
   static constexpr double impulse_ = 0x1p-26 / velocity_quantum;
-  static constexpr double shear_ = 0x1p-32 / velocity_quantum;
   Vec<D, double> place_ = quanta_of_the_least_place();
   double density_ = 1.0;
   static Vec<D, double> quanta_of_the_least_place() {

@@ -177,9 +177,7 @@ void fold_pair_law(const Scene& scene, const Lattice<D>& lattice, Model<D>& mode
   for (int axis = 0; axis < D; ++axis)
     model.pair.shift[axis] =
         scene.fluid.shift_rate * h / doubled_volume * velocity_quantum / model.pair.length[axis];
-  model.pair.shear = 1.0;
-  const double reach = scene.fluid.shift_shear * h;
-  model.shift_shear = reach * reach * velocity_quantum / (D * doubled_volume * model.dt);
+  model.shift_vorticity = scene.fluid.shift_vorticity * h * velocity_quantum / (doubled_volume * model.dt);
   model.no_slip_largest = scene.fluid.largest_no_slip;
   const UnitScale& units = model.units;
   model.pair.viscosity =

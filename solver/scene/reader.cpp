@@ -62,8 +62,8 @@ void read_fluid_law(const Fields& table, FluidScene& fluid) {
   fluid.transport = table.flag("transport", !classic);
   fluid.background_pressure = table.number("background_pressure", Quantity::plain, Sign::not_negative, 0.0);
   fluid.shift_rate = table.number("shift_rate", Quantity::plain, Sign::positive, fluid.shift_rate);
-  fluid.shift_shear = table.number("shift_shear", Quantity::plain, Sign::positive, fluid.shift_shear);
-  for (const char* key : {"shift_rate", "shift_shear"})
+  fluid.shift_vorticity = table.number("shift_vorticity", Quantity::plain, Sign::positive, fluid.shift_vorticity);
+  for (const char* key : {"shift_rate", "shift_vorticity"})
     if (!fluid.transport && table.has(key)) table.fail(key, "acts with transport = true only; remove it");
   fluid.largest_no_slip = table.number("largest_no_slip", Quantity::plain, Sign::positive, fluid.largest_no_slip);
   if (fluid.largest_no_slip < 1.0) table.fail("largest_no_slip", "must be at least 1, the factor of a plain wall");
