@@ -6,6 +6,7 @@
 
 #include "base/rotation.hpp"
 #include "base/vec.hpp"
+#include "physics/wall.hpp"
 
 namespace mappm {
 
@@ -117,44 +118,92 @@ template <int D>
 std::vector<LatticeWave> lattice_waves(KernelKind kernel, double reach) {
   std::vector<LatticeWave> waves;
   for (const Lattice<D>& lattice : lattices(std::integral_constant<int, D>())) {
-    if (kernel == KernelKind::wendland_c2) add_waves<WendlandC2>(lattice, reach, waves);
-    if (kernel == KernelKind::lucy) add_waves<Lucy>(lattice, reach, waves);
-    if (kernel == KernelKind::mps) add_waves<MpsWeight>(lattice, reach, waves);
+    switch (kernel) {
+      case KernelKind::wendland_c2:
+        add_waves<WendlandC2>(lattice, reach, waves);
+        break;
+      case KernelKind::lucy:
+        add_waves<Lucy>(lattice, reach, waves);
+        break;
+      case KernelKind::mps:
+        add_waves<MpsWeight>(lattice, reach, waves);
+        break;
+    }
   }
   return waves;
 }
 
-/// By the eigenvalues of the step, a matrix of two rows.
-double growth(const LatticeWave& wave, double step, double viscosity, double shift_rate) {
+/// The eigenvalues of the step, a matrix of two rows, are above -1 (Jury's criterion).
+bool is_stable(const LatticeWave& wave, double step, double viscosity, double shift_rate) {
   const double damping = 1.0 - step * viscosity * wave.friction;
   const double shifted = 1.0 + step * shift_rate * (wave.shift + wave.pressure);
-  const double determinant = damping * shifted;
-  const double half_trace = 0.5 * (shifted - step * step * wave.pressure + damping);
-  const double discriminant = half_trace * half_trace - determinant;
-  const double largest =
-      discriminant < 0.0 ? std::sqrt(determinant) : std::max(0.0, std::sqrt(discriminant) - half_trace);
-  return std::log(largest);
+  return damping >= -1.0 && shifted >= -1.0 &&
+         (1.0 + damping) * (1.0 + shifted) >= step * step * wave.pressure;
+}
+
+namespace {
+
+/// Rows of a square lattice on both sides of the surface.
+template <class Kernel, int D>
+double wall_friction_of(double reach, double largest_no_slip) {
+  constexpr double distance = 0.1;
+  const int most = static_cast<int>(reach) + 1;
+  const auto row = [&](double height) {
+    double sum = 0.0;
+    for (int j = D == 3 ? -most : 0; j <= (D == 3 ? most : 0); ++j)
+      for (int i = -most; i <= most; ++i) {
+        const double square = height * height + i * i + j * j;
+        if (square > 0.0 && square < reach * reach) sum += Kernel::gradient(std::sqrt(square) / reach);
+      }
+    return sum;
+  };
+  double all = row(0.0), fluid = all, wall = 0.0;
+  for (int k = 1; k <= most; ++k) {
+    all += 2.0 * row(k);
+    fluid += row(k);
+  }
+  for (int k = 0; k <= most; ++k) {
+    const Vec<1, double> above{{distance + k + 0.5}}, normal{{1.0}};
+    wall += no_slip_factor(above, normal, k + 0.5, 0.25, largest_no_slip) * row(above[0]);
+  }
+  return std::max(1.0, (2.0 * fluid + wall) / (2.0 * all));
+}
+
+}  // namespace
+
+template <int D>
+double wall_friction(KernelKind kernel, double reach, double largest_no_slip) {
+  switch (kernel) {
+    case KernelKind::wendland_c2:
+      return wall_friction_of<WendlandC2, D>(reach, largest_no_slip);
+    case KernelKind::lucy:
+      return wall_friction_of<Lucy, D>(reach, largest_no_slip);
+    case KernelKind::mps:
+      return wall_friction_of<MpsWeight, D>(reach, largest_no_slip);
+  }
+  return 1.0;
 }
 
 template <int D>
 double first_instability(KernelKind kernel, double reach, double viscosity, double shift_rate) {
   const std::vector<LatticeWave> waves = lattice_waves<D>(kernel, reach);
   const double h = 0.5 * reach;
-  const auto is_stable = [&](double step) {
-    return std::ranges::all_of(waves, [&](const LatticeWave& wave) {
-      return growth(wave, step * h, viscosity * h, shift_rate * h) <= 1e-9;
-    });
+  const auto all_stable = [&](double step) {
+    return std::ranges::all_of(
+        waves, [&](const LatticeWave& wave) { return is_stable(wave, step * h, viscosity * h, shift_rate * h); });
   };
   double low = 0.0, high = 4.0;
   while (high - low > 1e-4) {
     const double middle = 0.5 * (low + high);
-    (is_stable(middle) ? low : high) = middle;
+    (all_stable(middle) ? low : high) = middle;
   }
   return std::floor(100.0 * low + 0.005) / 100.0;
 }
 
 template std::vector<LatticeWave> lattice_waves<2>(KernelKind, double);
 template std::vector<LatticeWave> lattice_waves<3>(KernelKind, double);
+template double wall_friction<2>(KernelKind, double, double);
+template double wall_friction<3>(KernelKind, double, double);
 template double first_instability<2>(KernelKind, double, double, double);
 template double first_instability<3>(KernelKind, double, double, double);
 

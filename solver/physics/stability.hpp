@@ -7,7 +7,8 @@
 // the displacement, along e or across it; p is 0 across)
 //   p = (sum V G (e.r) sin k.r) (sum V (-W'/r) (e.r) sin k.r),  g = 2 sum V G (1 - cos k.r),
 //   H = sum V (G + G' (t.r)^2 / r) (1 - cos k.r).
-// A wave that grows without change of sign is no fault of the step: by it an uneven lattice turns into an even one.
+// The step is too long where a wave grows with a sign that changes in each step. Other growth is that of an uneven
+// lattice on its way to an even one, and knows no step.
 #pragma once
 
 #include <vector>
@@ -28,9 +29,14 @@ struct LatticeWave {
 template <int D>
 std::vector<LatticeWave> lattice_waves(KernelKind kernel, double reach);
 
-/// ln of the growth of a wave in one step, as far as it changes sign; negative where all such waves decay. `step` in
-/// dx / c, `viscosity` nu in c dx, `shift_rate` kappa h in dx.
-double growth(const LatticeWave& wave, double step, double viscosity, double shift_rate);
+/// Whether a wave does not grow with a sign that changes in each step. `step` in dx / c, `viscosity` nu in c dx,
+/// `shift_rate` kappa h in dx.
+bool is_stable(const LatticeWave& wave, double step, double viscosity, double shift_rate);
+
+/// By how much the friction of a PP at a plane wall may exceed that of one in the fluid: by the factors beta, which are at
+/// most `largest_no_slip`, of the FPs beyond. The PP is dx / 10 from the surface, nearer than all but a few come.
+template <int D>
+double wall_friction(KernelKind kernel, double reach, double largest_no_slip);
 
 /// c dt / h at which the first wave begins to grow, cut to two decimals. `viscosity`: nu / (c h).
 template <int D>

@@ -2,29 +2,79 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 namespace mappm {
 
-struct StepLimits {
-  double acoustic, viscous, body_force, contact;  // s; infinite where the term is absent
-  double smallest() const { return std::min({acoustic, viscous, body_force, contact}); }
+/// One reason why a step can be too long. In one unit of time; infinite where the reason is absent.
+struct StepLimit {
+  std::string_view of;     // the reason: "sound", "viscosity", "added mass", "force" or "contact"
+  double usual = HUGE_VAL;  // the step at run.step_factor = 1
+  double doubtful = HUGE_VAL;  // beyond it a run is warned about
+  double last = HUGE_VAL;      // beyond it a run is refused: a wave grows, or a motion is not resolved
 };
 
-/// dt <= min(0.25 h/c, 0.125 h^2/nu, 0.25 sqrt(h/g)) with h = rcut/2 (Morris, Fox and Zhu 1997), and a twentieth of
-/// the duration of the shortest contact. Above 0.7 h/c drags are wrong by 25 % without any sign of it.
-inline StepLimits step_limits(double h, double c, double nu, double g, double contact_duration) {
-  const double never = HUGE_VAL;
-  return {1.0 * h / c, nu > 0.0 ? 0.18 * h * h / nu : never, g > 0.0 ? 0.25 * std::sqrt(h / g) : never,
-          contact_duration > 0.0 ? 0.05 * contact_duration : never};
+struct StepLimits {
+  StepLimit waves, light_solids, force, contact;
+
+  std::array<StepLimit, 4> all() const { return {waves, light_solids, force, contact}; }
+  /// The one that rules: the shortest step at run.step_factor = 1.
+  StepLimit ruling() const {
+    const auto limits = all();
+    return *std::min_element(limits.begin(), limits.end(),
+                             [](const StepLimit& a, const StepLimit& b) { return a.usual < b.usual; });
+  }
+  /// The one that a growing step passes first, doubtful or last.
+  template <class Border>
+  StepLimit first(Border border) const {
+    const auto limits = all();
+    return *std::min_element(limits.begin(), limits.end(), [&](const StepLimit& a, const StepLimit& b) {
+      return a.*border < b.*border;
+    });
+  }
+};
+
+/// Share of the step of the first instability at which steps are neither warned about nor, at run.step_factor = 1,
+/// longer: a PP may come nearer to others, or to a wall, than on the lattices for which the instability is known.
+inline constexpr double margin_to_instability = 0.88;
+
+/// Waves of sound and viscosity: dt = h / c at run.step_factor = 1, or less where the first instability, in h / c
+/// (`first_instability`), is near. inviscid: where it would be without viscosity.
+inline StepLimit wave_limit(double h, double c, double first, double inviscid) {
+  const double usual = std::min(1.0, margin_to_instability * first);
+  const bool by_shift = margin_to_instability * inviscid < 1.0;
+  return {usual == 1.0 ? "sound" : by_shift ? "shift" : "viscosity", usual * h / c, margin_to_instability * first * h / c,
+          first * h / c};
 }
 
-/// Beyond this multiple of the smallest limit a run is refused; between 1 and it, it is warned about.
-inline constexpr double refused_step = 2.0;
+/// The fluid drags along a body that is lighter than what it drags: dt < 2 M / Gamma, or the body is thrown to and fro,
+/// farther in each step. M: its mass, A: its surface, Gamma = A (a mu / h + b rho c) the friction of the FPs on PPs beside
+/// it. a and b are measured, on free discs and spheres of 1 to 0.001 times the density of the fluid at rest.
+inline StepLimit light_solid_limit(double mass, double surface, double h, double c, double mu, double rho) {
+  constexpr double a = 2.5, b = 0.083;
+  const double last = 2.0 * mass / (surface * (a * mu / h + b * rho * c));
+  return {"added mass", 0.7 * last, margin_to_instability * last, last};
+}
 
-/// c = n sqrt(max(U^2, |g| L, nu U / R)): keeps the density within 1/n^2 of rho0 (Morris, Fox and Zhu 1997).
+/// 0.25 sqrt(h / g) (Morris, Fox and Zhu 1997).
+inline StepLimit force_limit(double h, double g) {
+  if (!(g > 0.0)) return {"force"};
+  const double usual = 0.25 * std::sqrt(h / g);
+  return {"force", usual, usual, 2.0 * usual};
+}
+
+/// A twentieth of the duration of the shortest contact.
+inline StepLimit contact_limit(double duration) {
+  if (!(duration > 0.0)) return {"contact"};
+  return {"contact", 0.05 * duration, 0.05 * duration, 0.1 * duration};
+}
+
+/// c = n sqrt(max(U^2, |g| L, 4 nu U / R)): keeps the density within 1/n^2 of rho0 (Morris, Fox and Zhu 1997). In
+/// viscous flow, where viscosity limits the step, a faster sound costs nothing.
 inline double sound_speed_rule(double n, double U, double g, double L, double nu, double R) {
-  return n * std::sqrt(std::max({U * U, std::fabs(g) * L, R > 0.0 ? nu * U / R : 0.0}));
+  return n * std::sqrt(std::max({U * U, std::fabs(g) * L, R > 0.0 ? 4.0 * nu * U / R : 0.0}));
 }
 
 }  // namespace mappm

@@ -6,6 +6,7 @@
 
 #include "particles/model.hpp"
 #include "particles/state.hpp"
+#include "physics/step_limit.hpp"
 #include "scene/scene.hpp"
 
 namespace mappm {
@@ -14,11 +15,12 @@ template <int D>
 struct BuiltModel {
   Model<D> model;
   std::uint64_t fluid_particles = 0;  // PPs in the whole box
+  StepLimits limits;                  // of the step, in scene units
   std::vector<std::string> warnings;  // one line each: scenes outside the mapped region, a step beyond its limit
 };
 
 /// Throws InputError for what the reader cannot see: overlapping solids, a solid larger than the box, a box smaller
-/// than 2 rcut, a step beyond `refused_step` times its limit.
+/// than 2 rcut, a step beyond the last that is stable.
 template <int D>
 BuiltModel<D> make_model(const Scene& scene);
 

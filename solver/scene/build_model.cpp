@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/error.hpp"
+#include "physics/stability.hpp"
 #include "physics/step_limit.hpp"
 #include "scene/build.hpp"
 #include "scene/carving.hpp"
@@ -140,6 +142,27 @@ ContactLaw make_contact(const Scene& scene, const UnitScale& units) {
                           contact.restitution, contact.friction);
 }
 
+double surface_of(const Ball<2>& ball) { return 2.0 * std::numbers::pi * ball.radius; }
+double surface_of(const Ball<3>& ball) { return 4.0 * std::numbers::pi * ball.radius * ball.radius; }
+
+/// Of the free body that limits most, in scene units. viscosity: nu / (c h).
+template <int D>
+StepLimit light_limit(const Scene& scene, const Model<D>& model, double viscosity) {
+  constexpr double h = 0.5;
+  StepLimit shortest{"added mass"};
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (scene.bodies[i].motion != Motion::free) continue;
+    const Shape<D>& shape = model.shapes[i];
+    double surface = 0.0;
+    for (const Ball<D>& ball : shape.balls) surface += surface_of(ball);
+    const StepLimit limit =
+        light_solid_limit(shape.mass, surface, h, 1.0, viscosity * h * model.rest_density, model.rest_density);
+    if (limit.last < shortest.last) shortest = limit;
+  }
+  const double time = model.units.time();
+  return {shortest.of, shortest.usual * time, shortest.doubtful * time, shortest.last * time};
+}
+
 /// Limits in scene units. A contact lasts at least as long as that of two of the lightest solids; under Hertz' law at
 /// the largest speed that the scene declares, or at a tenth of the sound speed if it declares none.
 template <int D>
@@ -153,9 +176,19 @@ StepLimits find_limits(const Scene& scene, const Model<D>& model, const Matter& 
                model.units.time();
   }
   const double g = std::max(largest_acceleration(scene.force), norm(on_solids));
-  StepLimits limits = step_limits(0.5 * scene.fluid.cutoff, model.units.velocity,
-                                  scene.fluid.viscosity / scene.fluid.density, g, duration);
-  if (!model.terms.fluid) limits.acoustic = HUGE_VAL;
+  const double h = 0.5 * scene.fluid.cutoff;
+  StepLimits limits;
+  limits.force = force_limit(h, g);
+  limits.contact = contact_limit(duration);
+  if (!model.terms.fluid) return limits;
+  const double reach = 1.0 / model.spacing, shift_rate = model.terms.transport ? scene.fluid.shift_rate : 0.0;
+  const double at_walls =
+      model.terms.solids ? wall_friction<D>(model.kernel, reach, scene.fluid.largest_no_slip) : 1.0;
+  const double viscosity = scene.fluid.viscosity / scene.fluid.density / (model.units.velocity * h);
+  limits.waves = wave_limit(h, model.units.velocity,
+                            first_instability<D>(model.kernel, reach, at_walls * viscosity, shift_rate),
+                            first_instability<D>(model.kernel, reach, 0.0, shift_rate));
+  limits.light_solids = light_limit(scene, model, viscosity);
   return limits;
 }
 
@@ -230,12 +263,12 @@ BuiltModel<D> make_model(const Scene& scene) {
   }
   check_margin(scene, model);
   const StepLimits limits = find_limits(scene, model, matter, on_solids);
-  const double step = scene.run.step > 0.0 ? scene.run.step : scene.run.step_factor * limits.smallest();
+  const double step = scene.run.step > 0.0 ? scene.run.step : scene.run.step_factor * limits.ruling().usual;
   check_step(scene, step, limits);
   model.dt = step / model.units.time();
   fold_pair_law(scene, lattice, model);
   fold_forces(scene, matter, model);
-  BuiltModel<D> built{model, matter.fluid_particles, {}};
+  BuiltModel<D> built{model, matter.fluid_particles, limits, {}};
   built.warnings = scene_warnings(scene, model, lattice, limits);
   return built;
 }

@@ -24,17 +24,13 @@ constexpr double least_support = 2.5, most_support = 4.5, least_radius = 4.0, la
 
 double norm(const Triple& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-std::string step_text(const StepLimits& limits) {
-  const std::pair<const char*, double> named[] = {{"sound", limits.acoustic},
-                                                  {"viscosity", limits.viscous},
-                                                  {"force", limits.body_force},
-                                                  {"contact", limits.contact}};
-  for (const auto& [name, limit] : named)
-    if (limit == limits.smallest()) return fmt::format("{:.6g} (of {})", limit, name);
-  return "infinite";
-}
-
 std::string step_key(const Scene& scene) { return scene.run.step > 0.0 ? "run.step" : "run.step_factor"; }
+
+/// How to come down to a step.
+std::string lower_step(const Scene& scene, double step, const StepLimits& limits) {
+  if (scene.run.step > 0.0) return fmt::format("lower it to {:.6g} or less", step);
+  return fmt::format("lower it to {:.3g} or less", std::floor(1000.0 * step / limits.ruling().usual) / 1000.0);
+}
 
 double declared_step(const Scene& scene) { return scene.run.step > 0.0 ? scene.run.step : scene.run.step_factor; }
 
@@ -170,10 +166,11 @@ void check_velocities(const Scene& scene, const Model<D>& model) {
 void check_step(const Scene& scene, double step, const StepLimits& limits) {
   if (!std::isfinite(step))
     throw InputError(scene.file, "run.step", "", "missing: nothing in this scene limits the step; give it");
-  if (step > refused_step * limits.smallest())
+  const StepLimit last = limits.first(&StepLimit::last);
+  if (step > last.last)
     throw InputError(scene.file, step_key(scene), fmt::format("{}", declared_step(scene)),
-                     fmt::format("the step {:.6g} is more than {} times its limit {}; lower it", step, refused_step,
-                                 step_text(limits)));
+                     fmt::format("the step {:.6g} is longer than {:.6g}, the last that {} allows; {}", step, last.last,
+                                 last.of, lower_step(scene, limits.first(&StepLimit::doubtful).doubtful, limits)));
 }
 
 template <int D>
@@ -181,10 +178,12 @@ std::vector<std::string> scene_warnings(const Scene& scene, const Model<D>& mode
                                         const StepLimits& limits) {
   std::vector<std::string> lines;
   const double step = model.dt * model.units.time();
-  if (step > (1.0 + 1e-9) * limits.smallest())
-    lines.push_back(
-        fmt::format("{} = {}: the step {:.6g} is beyond its limit {}: results may be wrong without any sign",
-                    step_key(scene), declared_step(scene), step, step_text(limits)));
+  const StepLimit doubtful = limits.first(&StepLimit::doubtful);
+  if (step > (1.0 + 1e-9) * doubtful.doubtful)
+    lines.push_back(fmt::format("{} = {}: the step {:.6g} is near {:.6g}, the last that {} allows: results may be wrong "
+                                "without any sign; {}",
+                                step_key(scene), declared_step(scene), step, doubtful.last, doubtful.of,
+                                lower_step(scene, doubtful.doubtful, limits)));
   const bool meeting = std::count_if(scene.bodies.begin(), scene.bodies.end(),
                                      [](const BodyScene& body) { return body.motion == Motion::free; }) > 0 &&
                        (scene.bodies.size() > 1 || scene.bodies[0].positions.size() > 1);

@@ -24,13 +24,14 @@ void read_box(const Fields& table, Source& source, Scene& scene) {
   table.finish();
 }
 
-SoundSpeed read_sound_speed(const Fields& table) {
+/// In space drags come out low at the usual resolutions, and lower yet with slower sound or a lower bound of beta.
+SoundSpeed read_sound_speed(const Fields& table, int dimension) {
   SoundSpeed speed;
   if (table.has("sound_speed")) {
     speed.value = table.number("sound_speed", Quantity::velocity, Sign::positive);
     if (table.has("sound_speed_factor")) table.fail("sound_speed_factor", "sound_speed is given too; keep one of them");
   } else {
-    speed.factor = table.number("sound_speed_factor", Quantity::plain, Sign::positive, speed.factor);
+    speed.factor = table.number("sound_speed_factor", Quantity::plain, Sign::positive, dimension == 2 ? 10.0 : 15.0);
     if (!table.has("reference_velocity"))
       table.fail("sound_speed", "missing; give a number, or the rule by reference_velocity and sound_speed_factor");
   }
@@ -50,7 +51,7 @@ std::optional<FluidScene::Disorder> read_disorder(const Fields& fluid) {
   return disorder;
 }
 
-void read_fluid_law(const Fields& table, FluidScene& fluid) {
+void read_fluid_law(const Fields& table, int dimension, FluidScene& fluid) {
   fluid.method =
       table.choice<Method>("method", {{"classic", Method::classic}, {"transport", Method::transport}}, fluid.method);
   const bool classic = fluid.method == Method::classic;
@@ -65,23 +66,26 @@ void read_fluid_law(const Fields& table, FluidScene& fluid) {
   fluid.shift_vorticity = table.number("shift_vorticity", Quantity::plain, Sign::positive, fluid.shift_vorticity);
   for (const char* key : {"shift_rate", "shift_vorticity"})
     if (!fluid.transport && table.has(key)) table.fail(key, "acts with transport = true only; remove it");
-  fluid.largest_no_slip = table.number("largest_no_slip", Quantity::plain, Sign::positive, fluid.largest_no_slip);
-  if (fluid.largest_no_slip < 1.0) table.fail("largest_no_slip", "must be at least 1, the factor of a plain wall");
-  if (fluid.no_slip != NoSlip::extrapolated && table.has("largest_no_slip"))
+  if (fluid.no_slip == NoSlip::extrapolated) {
+    fluid.largest_no_slip =
+        table.number("largest_no_slip", Quantity::plain, Sign::positive, dimension == 2 ? 4.0 : 8.0);
+    if (fluid.largest_no_slip < 1.0) table.fail("largest_no_slip", "must be at least 1, the factor of a plain wall");
+  } else if (table.has("largest_no_slip")) {
     table.fail("largest_no_slip", "acts with no_slip = \"extrapolated\" only; remove it");
+  }
   fluid.precision = table.choice<Precision>("precision", {{"double", Precision::full}, {"single", Precision::single}},
                                             fluid.precision);
 }
 
-void read_fluid(const Fields& table, const Triple& box, FluidScene& fluid) {
+void read_fluid(const Fields& table, const Triple& box, int dimension, FluidScene& fluid) {
   fluid.particles = table.flag("particles", true);
   fluid.density = table.number("density", Quantity::density, Sign::positive);
   fluid.spacing = table.number("spacing", Quantity::length, Sign::positive);
   fluid.cutoff = table.number("rcut", Quantity::length, Sign::positive, 3.0 * fluid.spacing);
-  fluid.sound_speed = read_sound_speed(table);
+  fluid.sound_speed = read_sound_speed(table, dimension);
   if (fluid.particles) {
     fluid.viscosity = table.number("viscosity", Quantity::viscosity, Sign::not_negative);
-    read_fluid_law(table, fluid);
+    read_fluid_law(table, dimension, fluid);
     fluid.velocity = table.vector("velocity", Quantity::velocity, {});
     fluid.flow = read_flow(table, Quantity::velocity, box);
     fluid.disorder = read_disorder(table);
@@ -169,7 +173,7 @@ Scene read_tree(const toml::table& tree, const std::string& file) {
   scene.units = root.choice<Units>("units", {{"SI", Units::si}, {"dimensionless", Units::dimensionless}});
   source.units = scene.units;
   read_box(root.required_table("box"), source, scene);
-  read_fluid(root.required_table("fluid"), scene.box, scene.fluid);
+  read_fluid(root.required_table("fluid"), scene.box, scene.dimension, scene.fluid);
   read_bodies(root.tables("body"), scene);
   if (const auto contact = root.table("contact")) scene.contact = read_contact(*contact);
   if (const auto force = root.table("force")) scene.force = read_force(*force, scene);

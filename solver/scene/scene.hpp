@@ -22,10 +22,10 @@ enum class Precision { single, full };      // full: double
 enum class Motion { free, fixed, moving };  // moving: with a prescribed constant velocity
 enum class ContactModel { none, linear, hertz };
 
-/// The sound speed, given as a number or by the rule c^2 = n^2 max(U^2, |g| L, nu U / R) of design/physics.
+/// The sound speed, given as a number or by the rule c^2 = n^2 max(U^2, |g| L, 4 nu U / R) (physics/step_limit.hpp).
 struct SoundSpeed {
   std::optional<double> value;  // m/s
-  double factor = 20.0;         // n
+  double factor = 0.0;          // n; by default 10 in the plane, 15 in space
   double velocity = 0.0;        // U, m/s
 };
 
@@ -43,7 +43,7 @@ struct FluidScene {
   double background_pressure = 0.0;       // p_b in units of c^2 rho0
   double shift_rate = 0.5;                // kappa of the transport velocity
   double shift_vorticity = 60.0;          // a: the share of the shift is at most (a h omega / c)^2
-  double largest_no_slip = 4.0;           // bound of the factor beta
+  double largest_no_slip = 1.0;           // bound of the factor beta; by default 4 in the plane, 8 in space
   Precision precision = Precision::full;  // of the pair arithmetic
   Triple velocity{};                      // at the start, m/s
   std::optional<FlowField> flow;          // added to it at the start, m/s
