@@ -40,15 +40,20 @@ def own_speed(overrides: tuple[str, ...], steps: int, ranks: int, folder: Path) 
     return Speed(record["particle_steps_per_second"], record["digest"], phases)
 
 
-def overrides_of(fluid: Fluid, every: int = 1_000_000) -> tuple[str, ...]:
-    """Overrides of sph_peer: the fluid, its step in seconds, and samples every so many steps."""
+def fluid_table(fluid: Fluid) -> str:
+    """As an override of sph_peer."""
     entries = ["density=1.0", f"viscosity={fluid.dynamic_viscosity!r}", "spacing=1.0", f"rcut={fluid.reach!r}",
                f"sound_speed={fluid.sound_speed!r}", FLOWS[fluid.flow]]
     if fluid.disorder:
         entries.append(f"disorder={{amplitude={fluid.disorder!r}, seed=1}}")
+    return f"fluid={{{', '.join(entries)}}}"
+
+
+def overrides_of(fluid: Fluid, every: int = 1_000_000) -> tuple[str, ...]:
+    """Overrides of sph_peer: the fluid, its step in seconds, and samples every so many steps."""
     return (
         f"box.size={[float(fluid.side)] * fluid.dimension}",
-        f"fluid={{{', '.join(entries)}}}",
+        fluid_table(fluid),
         f"run={{step={fluid.step * fluid.time_unit!r}, steps={fluid.steps}}}",
         f"output={{sample={every}, snapshot=1000000}}",
     )

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Protocol
 
 from reference.scripted import Failed
 from verification.errors import SolverError
@@ -58,7 +59,10 @@ def median_ratio(over: list[Speed], under: list[Speed]) -> float:
     return statistics.median(a.rate / b.rate for a, b in zip(over, under, strict=True))
 
 
-Measure = Callable[[bool, int, Path, Callable[[str], None]], tuple[dict[str, float], str]]
+class Measure(Protocol):
+    def __call__(self, quick: bool, repeats: int, folder: Path, say: Callable[[str], None],
+                 **more: object) -> tuple[dict[str, float], str]:
+        """Figures by "ratio NAME" or "figure NAME", and the commit they are of. Throws Broken, SolverError, Failed."""
 
 
 def keep(figures: dict[str, float], command: str, commit: str, file: Path | None) -> None:
@@ -73,25 +77,30 @@ def keep(figures: dict[str, float], command: str, commit: str, file: Path | None
     file.write_text(json.dumps(table, indent=1) + "\n")
 
 
-def run_benchmark(name: str, words: str, measure: Measure) -> int:
-    """Reads the command line of `python3 -m bench.NAME`, measures, prints and keeps the figures. 1 where a measurement is broken."""
+def run_benchmark(name: str, words: str, measure: Measure,
+                  add_options: Callable[[argparse.ArgumentParser], None] = lambda parser: None) -> int:
+    """Reads the command line of `python3 -m bench.NAME`, measures, prints and keeps the figures. Options that are added go to
+    `measure` by their names. 1 where a measurement is broken."""
     parser = argparse.ArgumentParser(prog=f"python3 -m bench.{name}", description=words,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="small scenes, which take seconds: to see that all works")
     parser.add_argument("--repeats", type=int, help="rounds, at least 1; default 7, with --quick 1")
     parser.add_argument("--json", type=Path, help="also keep the figures in this file")
     parser.add_argument("--out", type=Path, help="folder of the runs (default: one that is removed)")
+    add_options(parser)
     options = parser.parse_args()
+    more = {key: value for key, value in vars(options).items() if key not in ("quick", "repeats", "json", "out")}
     repeats = options.repeats if options.repeats is not None else (1 if options.quick else 7)
     if repeats < 1:
         parser.error(f"--repeats {repeats}: must be at least 1")
     with tempfile.TemporaryDirectory() as scratch:
         try:
             figures, commit = measure(options.quick, repeats, options.out or Path(scratch),
-                                      lambda text: print(text, file=sys.stderr, flush=True))
+                                      lambda text: print(text, file=sys.stderr, flush=True), **more)
         except (Broken, SolverError, Failed) as error:
             print(f"{name}: {error}", file=sys.stderr)
             return 1
-    command = f"python3 -m bench.{name}" + (" --quick" if options.quick else "")
+    added = "".join(f" --{key} {value}" for key, value in more.items())
+    command = f"python3 -m bench.{name}{added}" + (" --quick" if options.quick else "")
     keep(figures, f"{command} --repeats {repeats}", commit, options.json)
     return 0

@@ -1,8 +1,8 @@
 """A periodic fluid that several codes start alike: particles on a lattice that carry one of three flows.
 
-The spacing of the lattice, the density and the largest velocity of the flow are 1. The smoothing length h is half the range of
-the pair law. Steps are counted in h/c, with c the sound speed, and viscosity in c h: a limit that sound sets is then about the same number
-in the plane and in space.
+The spacing of the lattice, the density and the largest velocity of the flow are 1. The smoothing length h is half the range
+of the pair law. Steps are counted in h/c, with c the sound speed, and viscosity in c h: a limit that sound sets is then about
+the same number in the plane and in space.
 
 LAMMPS and LIGGGHTS, which grew from it, share the words that make such a fluid and the table that they print.
 """
@@ -59,8 +59,8 @@ class Fluid:
 
 
 def velocity_of(fluid: Fluid) -> list[str]:
-    """Components as formulas of LAMMPS, by the axis. Shear wave; vortices of Taylor and Green, in the plane; or Arnold, Beltrami and
-    Childress' flow, in space."""
+    """Components as formulas of LAMMPS, by the axis. A shear wave; vortices of Taylor and Green, in the plane; or the flow of
+    Arnold, Beltrami and Childress, in space."""
     x, y, z = (f"2*PI*{axis}/{fluid.side}" for axis in "xyz")
     if fluid.flow == WAVE:
         return [f"sin({y})"]

@@ -9,7 +9,8 @@ import pytest
 from bench.codes import MAPPM, overrides_of
 from reference.lammps import program
 from reference.lammps.__main__ import main
-from reference.lammps.sph import PEER as LAMMPS, rest_density
+from reference.lammps.sph import PEER as LAMMPS
+from reference.lammps.sph import rest_density
 from reference.liggghts.sph import PEER as LIGGGHTS
 from reference.live import read_result
 from reference.periodic_fluid import ABC, VORTICES, WAVE, Fluid, energies_of, loop_seconds, velocity_of
