@@ -83,7 +83,7 @@ class Other:
 
     def speed(self, fluid: Fluid, ranks: int, folder: Path) -> Speed:
         if fluid not in self.skins:
-            part = replace(fluid, steps=max(1, fluid.steps // 4))
+            part = replace(fluid, steps=max(1, fluid.steps // 2))
             self.skins[fluid] = max(SKINS, key=lambda skin: self._rate(part, skin, 1, folder))
         return Speed(self._rate(fluid, self.skins[fluid], ranks, folder))
 

@@ -85,6 +85,7 @@ def largest_useful(trials: list[Trial], small: float, largest: float, resolution
             return False
 
     good, bad = small, math.inf
+    tell(small, True, left_at_most(good, bad, resolution))
     while good < largest and bad > good * (1 + resolution):
         step = min(2 * good, largest) if bad == math.inf else math.sqrt(good * bad)
         useful = decays_alike(step)

@@ -78,19 +78,19 @@ def keep(figures: dict[str, float], command: str, commit: str, file: Path | None
 
 
 def run_benchmark(name: str, words: str, measure: Measure,
-                  add_options: Callable[[argparse.ArgumentParser], None] = lambda parser: None) -> int:
+                  add_options: Callable[[argparse.ArgumentParser], None] = lambda parser: None, rounds: int = 7) -> int:
     """Reads the command line of `python3 -m bench.NAME`, measures, prints and keeps the figures. Options that are added go to
     `measure` by their names. 1 where a measurement is broken."""
     parser = argparse.ArgumentParser(prog=f"python3 -m bench.{name}", description=words,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="small scenes, which take seconds: to see that all works")
-    parser.add_argument("--repeats", type=int, help="rounds, at least 1; default 7, with --quick 1")
+    parser.add_argument("--repeats", type=int, help=f"rounds, at least 1; default {rounds}, with --quick 1")
     parser.add_argument("--json", type=Path, help="also keep the figures in this file")
     parser.add_argument("--out", type=Path, help="folder of the runs (default: one that is removed)")
     add_options(parser)
     options = parser.parse_args()
     more = {key: value for key, value in vars(options).items() if key not in ("quick", "repeats", "json", "out")}
-    repeats = options.repeats if options.repeats is not None else (1 if options.quick else 7)
+    repeats = options.repeats if options.repeats is not None else (1 if options.quick else rounds)
     if repeats < 1:
         parser.error(f"--repeats {repeats}: must be at least 1")
     with tempfile.TemporaryDirectory() as scratch:

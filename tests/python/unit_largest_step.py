@@ -60,9 +60,9 @@ def test_a_code_that_fails_at_the_small_step_has_no_largest_one() -> None:
 def test_each_step_is_told_and_what_is_left_shrinks_to_nothing() -> None:
     told: list[tuple[float, bool, int]] = []
     found = largest_useful([off_beyond(0.3)], 0.05, 3.2, 0.05, lambda *words: told.append(words))
-    assert [step for step, _, _ in told][:3] == [0.1, 0.2, 0.4]
+    assert [step for step, _, _ in told][:4] == [0.05, 0.1, 0.2, 0.4]
     assert max(step for step, useful, _ in told if useful) == found.step
-    bisected = [left for _, _, left in told[2:]]
+    bisected = [left for _, _, left in told[3:]]
     assert bisected == sorted(bisected, reverse=True) and bisected[-1] == 0
     assert left_at_most(0.2, 0.4, 0.05) == 4 and left_at_most(0.2, 0.4, 0.2) == 2
 
