@@ -22,8 +22,9 @@ from pathlib import Path
 
 import numpy as np
 
+from bench.meter import Broken, run_benchmark
 from bench.scaling import Lab, Point, doubled, median_of, require_one_digest
-from bench.speed import Broken, run_benchmark, scene_of
+from bench.speed import scene_of
 from verification.solver import MPI_ENVIRONMENT, Options, Run, program
 
 PAPER_BOX, PAPER_DENSITY = (177.0, 2816.0), 12.83  # rcut; PPs to the square of rcut

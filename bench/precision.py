@@ -14,7 +14,9 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from bench.speed import FLUIDS, QUICK_FLUIDS, Broken, Meter, Speed, median_rate, median_ratio, own_speed, run_benchmark, scene_of, steps_for
+from bench.codes import own_speed
+from bench.meter import Broken, Meter, Speed, median_rate, median_ratio, run_benchmark
+from bench.speed import FLUIDS, QUICK_FLUIDS, scene_of, steps_for
 from verification.case import Case
 from verification.judge import measures
 from verification.manifest import find_case

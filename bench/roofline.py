@@ -22,7 +22,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from bench.speed import Broken, keep
+from bench.meter import Broken, keep
 from verification.errors import SolverError
 from verification.provenance import commit
 from verification.solver import build_folder, program

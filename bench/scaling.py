@@ -16,7 +16,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from bench.speed import SCENE, Broken, keep, scene_of
+from bench.codes import SCENE
+from bench.meter import Broken, keep
+from bench.speed import scene_of
 from verification.errors import SolverError
 from verification.runner import cores
 from verification.solver import ROOT, Options, Run, run

@@ -16,8 +16,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from bench.speed import Broken, Meter, Speed, median_rate, median_ratio, run_benchmark, steps_for
-from reference.liggghts import sph
+from bench.meter import Broken, Meter, Speed, median_rate, median_ratio, run_benchmark
+from bench.speed import steps_for
+from reference.periodic_fluid import Fluid
 from verification.solver import ROOT, Options, Run, run
 
 FLUID = ROOT / "cases" / "sph_peer" / "case.toml"
@@ -44,7 +45,7 @@ class Suspension:
 
 def in_shear_wave(box: tuple[float, ...], bodies: list[str], with_fluid: bool = True) -> Suspension:
     """In the fluid of the benchmark `speed`."""
-    reach = 2.0 * sph.Fluid(len(box), 10, 1).smoothing_length
+    reach = 2.0 * Fluid(len(box), 10, 1).smoothing_length
     alone = "fluid={particles=false, density=1.0, spacing=1.0, sound_speed=20.0}"
     fluid = f"fluid.rcut={reach!r}" if with_fluid else alone
     return Suspension(FLUID, box, (fluid, f"body=[{', '.join(bodies)}]", CONTACT), (fluid,), with_fluid)

@@ -1,60 +1,41 @@
-"""How fast the solver is: beside LIGGGHTS' SPH on the same fluid, on two processes beside one, and from few to many PPs.
+"""How fast the solver is: beside the SPH of LIGGGHTS and of LAMMPS on the same fluid, on two processes, and from few to many PPs.
 
     python3 -m bench.speed [--quick] [--repeats N] [--json FILE] [--out DIR]
 
-The fluid is that of the case sph_peer: a lattice with a shear wave, 39 neighbours a particle in the plane and 77 in space,
-the same for both codes. MaPPM also runs it without transport velocity, a term that LIGGGHTS' SPH does not have. Runs
+The fluid is that of the case sph_peer with nu = .01 c h: a lattice with a shear wave, c = 20 U, 39 neighbours a particle in the
+plane and 77 in space, the same for all codes. A code that takes longer steps needs fewer of them. So each goes at its own largest
+useful step, which is found first (bench/largest_step.py), and what counts is flow time a core-second: the step in h/c times
+particle-steps a second and core; h is half the range of the pair law. MaPPM also runs without transport velocity, a term
+that the others do not have. These run with the skin of their lists of neighbours that is quickest at their step. Runs
 alternate, so that what else the machine does meets all of them; a figure is a median, and a ratio the median of ratios within
 one round. Prints a line a figure, `ratio NAME VALUE` or `figure NAME VALUE`. Ends with 1 where a measurement is broken (a run
-that failed, digests that differ between one process and two), never because the machine is slow, and with 77 where LIGGGHTS is
-not installed.
+that failed, digests that differ between one process and two), never because the machine is slow, and with 77 where LIGGGHTS or
+LAMMPS is not installed: its rows are SKIPPED.
 """
 
-import argparse
-import json
-import re
 import statistics
 import sys
-import tempfile
-import time
 from collections.abc import Callable
-from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 
-from reference.liggghts import sph
-from reference.liggghts.program import CODE, Failed, installed, run_script
-from verification.errors import SolverError
-from verification.provenance import processor
-from verification.runner import cores
-from verification.solver import ROOT, Options, Run, run
+from bench.codes import MAPPM, WITHOUT_TRANSPORT, Code, own_speed, peers
+from bench.largest_step import VISCOSITY, Found, largest_step
+from bench.meter import Broken, Meter, Speed, median_rate, median_ratio, run_benchmark
+from reference.periodic_fluid import Fluid
+from verification.solver import Run
 
-SCENE = ROOT / "cases" / "sph_peer" / "case.toml"
-WITHOUT_TRANSPORT = "fluid.transport=false"
 SKIPPED_CODE = 77  # what ctest takes for skipped
-PEER_SKIN = sph.SKINS[0]
+PROCESSES = (1, 2)
+PEER_SHARE = 2 / 3  # of the steps of MaPPM, which is quicker
 FLUIDS = {"2d_39": (2, 400), "3d_77": (3, 54)}  # dimension, particles along a side: about 160 000
 QUICK_FLUIDS = {"2d_39": (2, 64), "3d_77": (3, 16)}
 SIZES = {"1e4": 100, "1e5": 316, "1e6": 1000}  # in the plane: particles along a side
 QUICK_SIZES = {"1e3": 32, "1e4": 100}
 
 
-class Broken(RuntimeError):
-    """A measurement that is none."""
-
-
-@dataclass(frozen=True)
-class Speed:
-    """Of one run: particle-steps a second of wall time, start and output left out."""
-
-    rate: float
-    digest: str = ""
-    phases: dict[str, float] | None = None  # wall seconds
-
-
 def scene_of(dimension: int, sides: tuple[int, ...]) -> tuple[str, ...]:
     """Overrides of sph_peer; sides in particles, an entry an axis."""
-    reach = 2.0 * sph.Fluid(dimension, 10, 1).smoothing_length
+    reach = 2.0 * Fluid(dimension, 10, 1).smoothing_length
     return (
         f"box.size=[{', '.join(f'{side}.0' for side in sides)}]",
         f"fluid.rcut={reach!r}",
@@ -68,79 +49,76 @@ def steps_for(particles: int, quick: bool) -> int:
     return 10 if quick else max(80, min(1600, 16_000_000 // particles))
 
 
-def own_speed(overrides: tuple[str, ...], steps: int, ranks: int, folder: Path) -> Speed:
-    finished: Run = run(SCENE, folder / "mappm", Options(ranks=ranks, steps=steps, overrides=overrides))
-    record = finished.record
-    phases = {name: seconds for name, seconds in record["wall_seconds"].items() if name not in ("output", "steps")}
-    return Speed(record["particle_steps_per_second"], record["digest"], phases)
+def prefix_of(code: Code) -> str:
+    """Before the names of its figures."""
+    return "" if code is MAPPM else f"{code.name}_"
 
 
-def peer_speed(fluid: sph.Fluid, ranks: int, folder: Path) -> Speed:
-    script = "\n".join(line for line in sph.script_of(fluid, PEER_SKIN).splitlines() if not line.startswith("dump"))
-    finished = run_script(script + "\n", folder / "liggghts", ranks)
-    loop = re.search(r"Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", finished.log)
-    if not loop or int(loop[3]) != fluid.particles:
-        raise Broken(f"LIGGGHTS printed no loop time for {fluid.particles} particles: {finished.log[-300:]}")
-    return Speed(fluid.particles * fluid.steps / float(loop[1]))
+def step_figures(name: str, code: Code, found: Found) -> dict[str, float]:
+    """The decays are those at small steps, over the exact ones: all codes must have about the same flow."""
+    prefix = f"fluid_{name}.{prefix_of(code)}"
+    figures = {f"figure {prefix}largest_step": found.step}
+    return figures | {f"ratio {prefix}{flow}_decay_over_exact": rate
+                      for flow, rate in zip(("wave", "vortices"), found.rates, strict=True)}
 
 
-class Meter:
-    """Rounds of runs: each round makes every run once, in turn."""
-
-    def __init__(self, repeats: int, say: Callable[[str], None]):
-        self.repeats, self.say = repeats, say
-
-    def rounds(self, name: str, runs: dict[str, Callable[[], Speed]]) -> dict[str, list[Speed]]:
-        found: dict[str, list[Speed]] = {key: [] for key in runs}
-        started = time.monotonic()
-        for done in range(self.repeats):
-            for key, once in runs.items():
-                found[key].append(once())
-            left = (time.monotonic() - started) * (self.repeats - done - 1) / (done + 1)
-            self.say(f"{name}: round {done + 1} of {self.repeats}, {left:.0f} s left")
-        for key, speeds in found.items():
-            if len({speed.digest for speed in speeds}) > 1:
-                raise Broken(f"{name}, {key}: rounds end with different digests")
-        return found
+def rate_figures(name: str, code: Code, step: float, speeds: dict[int, list[Speed]]) -> dict[str, float]:
+    """speeds: by the number of processes."""
+    prefix, figures = f"fluid_{name}.{prefix_of(code)}", {}
+    for ranks, found in speeds.items():
+        rate = median_rate(found)
+        figures[f"figure {prefix}particle_steps_per_s_{ranks}"] = rate
+        figures[f"figure {prefix}flow_time_per_core_s_{ranks}"] = step * rate / ranks
+    return figures
 
 
-def median_rate(speeds: list[Speed]) -> float:
-    return statistics.median(speed.rate for speed in speeds)
+def ratio_figures(name: str, code: Code, peer: Code, steps: dict[Code, float],
+                  found: dict[tuple[Code, int], list[Speed]]) -> dict[str, float]:
+    """In particle-steps a second and in flow time a core-second."""
+    prefix, figures = f"fluid_{name}.{prefix_of(code)}", {}
+    for ranks in PROCESSES:
+        ratio = median_ratio(found[code, ranks], found[peer, ranks])
+        figures[f"ratio {prefix}over_{peer.name}_{ranks}"] = ratio
+        figures[f"ratio {prefix}flow_time_over_{peer.name}_{ranks}"] = ratio * steps[code] / steps[peer]
+    return figures
 
 
-def median_ratio(over: list[Speed], under: list[Speed]) -> float:
-    return statistics.median(a.rate / b.rate for a, b in zip(over, under, strict=True))
+def share_figures(name: str, speeds: list[Speed]) -> dict[str, float]:
+    """Of the phases of a step."""
+    phases = [speed.phases for speed in speeds]
+    return {f"ratio fluid_{name}.share_{phase}": statistics.median(seconds[phase] / sum(seconds.values()) for seconds in phases)
+            for phase in phases[0]}
 
 
-def against_peer(meter: Meter, quick: bool, folder: Path, with_peer: bool) -> dict[str, float]:
-    figures = {}
+def of_fluid(name: str, dimension: int, side: int, meter: Meter, quick: bool, folder: Path) -> dict[str, float]:
+    own, others = [MAPPM, WITHOUT_TRANSPORT], peers()[0]
+    codes: list[Code] = [*own, *others]
+    largest = {code: largest_step(code, dimension, quick, folder, meter.say) for code in codes}
+    steps = {code: found.step for code, found in largest.items()}
+    runs: dict[tuple[Code, int], Callable[[], Speed]] = {}
+    most = steps_for(side**dimension, quick)
+    for ranks in PROCESSES:
+        for code in codes:
+            fluid = Fluid(dimension, side, most if code in own else round(most * PEER_SHARE), steps[code], viscosity=VISCOSITY)
+            runs[code, ranks] = lambda c=code, f=fluid, r=ranks: c.speed(f, r, folder)
+    found = meter.rounds(f"fluid {name}", runs)
+    if any(found[code, 1][0].digest != found[code, 2][0].digest for code in own):
+        raise Broken(f"fluid {name}: the digest on two processes is not that on one")
+    figures: dict[str, float] = {}
+    for code in codes:
+        figures |= step_figures(name, code, largest[code])
+        figures |= rate_figures(name, code, steps[code], {ranks: found[code, ranks] for ranks in PROCESSES})
+    for code in own:
+        for peer in others:
+            figures |= ratio_figures(name, code, peer, steps, found)
+    figures[f"ratio fluid_{name}.two_processes_over_one"] = median_ratio(found[MAPPM, 2], found[MAPPM, 1])
+    return figures | share_figures(name, found[MAPPM, 1])
+
+
+def against_peers(meter: Meter, quick: bool, folder: Path) -> dict[str, float]:
+    figures: dict[str, float] = {}
     for name, (dimension, side) in (QUICK_FLUIDS if quick else FLUIDS).items():
-        fluid = sph.Fluid(dimension, side, steps_for(side**dimension, quick))
-        overrides = scene_of(dimension, (side,) * dimension)
-        runs: dict[str, Callable[[], Speed]] = {}
-        for ranks in (1, 2):
-            for code, more in (("own", ()), ("plain", (WITHOUT_TRANSPORT,))):
-                runs[f"{code}_{ranks}"] = lambda ranks=ranks, o=overrides + more, f=fluid: own_speed(o, f.steps, ranks, folder)
-            if with_peer:
-                runs[f"peer_{ranks}"] = lambda ranks=ranks, f=fluid: peer_speed(f, ranks, folder)
-        found = meter.rounds(f"fluid {name}", runs)
-        for code in ("own", "plain"):
-            if found[f"{code}_1"][0].digest != found[f"{code}_2"][0].digest:
-                raise Broken(f"fluid {name}: the digest on two processes is not that on one")
-        for ranks in (1, 2):
-            own, plain = found[f"own_{ranks}"], found[f"plain_{ranks}"]
-            figures[f"figure fluid_{name}.particle_steps_per_s_{ranks}"] = median_rate(own)
-            figures[f"figure fluid_{name}.without_transport_particle_steps_per_s_{ranks}"] = median_rate(plain)
-            if with_peer:
-                peer = found[f"peer_{ranks}"]
-                figures[f"figure fluid_{name}.liggghts_particle_steps_per_s_{ranks}"] = median_rate(peer)
-                figures[f"ratio fluid_{name}.over_liggghts_{ranks}"] = median_ratio(own, peer)
-                figures[f"ratio fluid_{name}.without_transport_over_liggghts_{ranks}"] = median_ratio(plain, peer)
-        figures[f"ratio fluid_{name}.two_processes_over_one"] = median_ratio(found["own_2"], found["own_1"])
-        phases = [speed.phases for speed in found["own_1"]]
-        for phase in phases[0]:
-            shares = [seconds[phase] / sum(seconds.values()) for seconds in phases]
-            figures[f"ratio fluid_{name}.share_{phase}"] = statistics.median(shares)
+        figures |= of_fluid(name, dimension, side, meter, quick, folder)
     return figures
 
 
@@ -166,55 +144,15 @@ def over_sizes(meter: Meter, quick: bool, folder: Path) -> dict[str, float]:
 def measure(quick: bool, repeats: int, folder: Path, say: Callable[[str], None]) -> tuple[dict[str, float], str]:
     """Figures by "ratio NAME" or "figure NAME", and where they come from. Throws Broken, SolverError, Failed."""
     meter = Meter(repeats, say)
-    figures = against_peer(meter, quick, folder, installed()) | over_sizes(meter, quick, folder)
+    figures = against_peers(meter, quick, folder) | over_sizes(meter, quick, folder)
     return figures, Run(folder / "mappm").record["commit"]
 
 
-Measure = Callable[[bool, int, Path, Callable[[str], None]], tuple[dict[str, float], str]]
-
-
-def keep(figures: dict[str, float], command: str, commit: str, file: Path | None) -> None:
-    """Prints a line a figure; writes them to the file, if there is one, with where they come from."""
-    for name, value in figures.items():
-        print(f"{name} {value:.4g}")
-    if file is None:
-        return
-    table = {"date": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC", "command": command, "commit": commit,
-             "host": f"{processor()}, {cores()} cores", "figures": figures}
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(json.dumps(table, indent=1) + "\n")
-
-
-def run_benchmark(name: str, words: str, measure: Measure) -> int:
-    """Reads the command line of `python3 -m bench.NAME`, measures, prints and keeps the figures. 1 where a measurement is broken."""
-    parser = argparse.ArgumentParser(prog=f"python3 -m bench.{name}", description=words,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="small scenes, which take seconds: to see that all works")
-    parser.add_argument("--repeats", type=int, help="rounds, at least 1; default 7, with --quick 1")
-    parser.add_argument("--json", type=Path, help="also keep the figures in this file")
-    parser.add_argument("--out", type=Path, help="folder of the runs (default: one that is removed)")
-    options = parser.parse_args()
-    repeats = options.repeats if options.repeats is not None else (1 if options.quick else 7)
-    if repeats < 1:
-        parser.error(f"--repeats {repeats}: must be at least 1")
-    with tempfile.TemporaryDirectory() as scratch:
-        try:
-            figures, commit = measure(options.quick, repeats, options.out or Path(scratch),
-                                      lambda text: print(text, file=sys.stderr, flush=True))
-        except (Broken, SolverError, Failed) as error:
-            print(f"{name}: {error}", file=sys.stderr)
-            return 1
-    command = f"python3 -m bench.{name}" + (" --quick" if options.quick else "")
-    keep(figures, f"{command} --repeats {repeats}", commit, options.json)
-    return 0
-
-
 def main() -> int:
-    code = run_benchmark("speed", __doc__, measure)
-    if code == 0 and not installed():
-        print(f"{CODE} is not installed: no ratio to it. apt-get install liggghts", file=sys.stderr)
-        return SKIPPED_CODE
-    return code
+    code = run_benchmark("speed", __doc__, measure, rounds=5)
+    for words in peers()[1]:
+        print(f"rows SKIPPED: {words}", file=sys.stderr)
+    return SKIPPED_CODE if code == 0 and peers()[1] else code
 
 
 if __name__ == "__main__":

@@ -10,25 +10,35 @@ PALE = "#6f9cc4"
 PHASES = {"pairs": BLUE, "lists": PALE, "sort": GREY, "integrate": GREEN, "solids": DARK, "exchange": RED}
 
 
+CODES = {"": ("MaPPM", BLUE), "without_transport_": ("MaPPM, no transport velocity", PALE), "lammps_": ("LAMMPS, SPH", DARK),
+         "liggghts_": ("LIGGGHTS, SPH", GREY)}
+
+
 def speeds(figures: dict[str, float], file: Path) -> None:
-    """Particle-steps a second on one process and on two: MaPPM, also without transport velocity, and LIGGGHTS' SPH; figures of
-    bench/speed.py."""
-    codes = {"": ("MaPPM, double", BLUE), "without_transport_": ("MaPPM, no transport velocity", PALE),
-             "liggghts_": ("LIGGGHTS, SPH", GREY)}
-    with figure_of(file, 7, 3.2) as axes:
-        for row, name in enumerate(FLUIDS):
-            for k, ranks in enumerate((1, 2)):
-                place = 2 * row + 0.9 * k
-                for side, (code, (words_of_code, color)) in zip((-0.26, 0.0, 0.26), codes.items(), strict=True):
-                    rate = figures.get(f"figure fluid_{name}.{code}particle_steps_per_s_{ranks}")
-                    if rate is None:
-                        continue
-                    axes.barh(place + side, rate / 1e6, 0.25, color=color, label=words_of_code if row == k == 0 else None)
-                    axes.text(rate / 1e6, place + side, f" {rate / 1e6:.2g}", va="center", fontsize=8)
-        axes.set_yticks([0, 0.9, 2, 2.9], [f"{words}, {count}" for words in FLUIDS.values() for count in ("one process", "two")])
-        axes.invert_yaxis()
-        axes.set_xlabel("million particle-steps per second")
-        axes.legend(frameon=False, fontsize=8, loc="lower right")
+    """Particle-steps a second, and flow time a core-second at the largest useful step of each code, on one process and on two;
+    figures of bench/speed.py."""
+    panels = {"particle_steps_per_s": "million particle-steps per second",
+              "flow_time_per_core_s": "million particles times h/c, per core-second"}
+    panels = {name: words for name, words in panels.items() if f"figure fluid_2d_39.{name}_1" in figures}  # older tables know one
+    with figure_of(file, 5.5 * len(panels), 3.6, columns=len(panels)) as made:
+        for panel, (name, words) in zip([made] if len(panels) == 1 else made, panels.items(), strict=True):
+            _bars_of_codes(panel, figures, name)
+            panel.set_xlabel(words)
+
+
+def _bars_of_codes(axes, figures: dict[str, float], name: str) -> None:
+    places = {(fluid, ranks): 2 * row + 0.9 * k for row, fluid in enumerate(FLUIDS) for k, ranks in enumerate((1, 2))}
+    for side, (code, (words, color)) in zip((-0.3, -0.1, 0.1, 0.3), CODES.items(), strict=True):
+        rates = {place: figures.get(f"figure fluid_{fluid}.{code}{name}_{ranks}") for (fluid, ranks), place in places.items()}
+        rates = {place: rate / 1e6 for place, rate in rates.items() if rate is not None}
+        axes.barh([place + side for place in rates], list(rates.values()), 0.19, color=color, label=words if rates else None)
+        for place, rate in rates.items():
+            axes.text(rate, place + side, f" {rate:.2g}", va="center", fontsize=7)
+    axes.set_yticks(list(places.values()), [f"{FLUIDS[fluid]}, {'one process' if ranks == 1 else 'two'}" for fluid, ranks in places],
+                    fontsize=8)
+    axes.invert_yaxis()
+    axes.margins(x=0.12)
+    axes.legend(frameon=False, fontsize=7, loc="lower right")
 
 
 def _over_processes(figures: dict[str, float], prefix: str, name: str) -> dict[int, float]:

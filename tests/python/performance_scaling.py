@@ -10,7 +10,7 @@ import pytest
 
 from bench import cost_model, scaling
 from bench.scaling import Point
-from bench.speed import Broken
+from bench.meter import Broken
 from verification.speed_charts import costs, scalings
 
 ROOT = Path(__file__).parents[2]

@@ -1,0 +1,38 @@
+"""Programs that read a script, such as LIGGGHTS and LAMMPS: run in a folder, their words and figures kept."""
+
+import os
+import re
+import resource
+import subprocess
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Finished:
+    version: str
+    log: str
+    core_seconds: float
+
+
+class Failed(RuntimeError):
+    """The program ended with an error: its own message."""
+
+
+def _children_seconds() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def run_in(folder: Path, command: list[str], version: str, environment: Mapping[str, str] = {}) -> Finished:
+    """Runs the command in `folder`; the first group of the pattern `version` in its output is the version. Throws Failed."""
+    before = _children_seconds()
+    done = subprocess.run(command, cwd=folder, text=True, env=os.environ | environment, stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    seconds = _children_seconds() - before
+    error = re.search(r"^ERROR.*", done.stdout, re.MULTILINE)
+    if done.returncode != 0 or error:
+        raise Failed(error.group(0) if error else f"exit status {done.returncode}: {done.stdout[-300:]}")
+    found = re.search(version, done.stdout)
+    return Finished(found.group(1) if found else "", done.stdout, seconds)
