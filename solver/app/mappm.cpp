@@ -56,7 +56,7 @@ void run_scene(const Scene& scene, const RunOptions& options, const DomainOption
   if (domain_options.faces) engine_options.faces = scene.output.sample;
   ParallelEngine<D> engine(built.model, domains, communicator, std::move(start.state), engine_options);
 
-  RunSetup<D> setup{scene, built.model, communicator, options, start, "mappm", built.warnings};
+  RunSetup<D> setup{scene, built.model, communicator, options, start, built.limits, "mappm", built.warnings};
   setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
   setup.program_options = domain_options.repeated();
   const Vec<D, int> grid = domains.grid();

@@ -21,7 +21,7 @@ void run_scene(const Scene& scene, const RunOptions& options, Neighbours neighbo
   Start<D> start = start_run<D>(scene, built.model, Region<D>::whole_box(), options, group);
   SerialEngine<D> engine(built.model, std::move(start.state), neighbours);
 
-  RunSetup<D> setup{scene, built.model, group, options, start, "mappm-reference", built.warnings};
+  RunSetup<D> setup{scene, built.model, group, options, start, built.limits, "mappm-reference", built.warnings};
   setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
   if (neighbours == Neighbours::all_pairs) setup.program_options = " --neighbours all-pairs";
   RunLoop<D, SerialEngine<D>>(setup, engine).run();

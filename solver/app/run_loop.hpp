@@ -19,6 +19,7 @@
 #include "output/checkpoint_folder.hpp"
 #include "output/durable_file.hpp"
 #include "output/face_series.hpp"
+#include "output/fastest.hpp"
 #include "output/progress.hpp"
 #include "output/run_record.hpp"
 #include "output/series.hpp"
@@ -37,6 +38,7 @@ struct RunSetup {
   const Group& group;
   const RunOptions& options;
   const Start<D>& start;
+  const StepLimits& limits;  // of the step, in scene units
   std::string program;
   std::vector<std::string> warnings;
   std::string program_options = {};  // those that only this program has, as given: " --threads 2"
@@ -114,6 +116,8 @@ class RunLoop {
   bool outputs_due() const;
   void write_outputs();
   void sample(const Sample<D>& now);
+  void check_mach(const Totals<D>& totals, const FluidParticles<D>& fluid);
+  std::string step_text() const;
   void save();
   void remember(const Totals<D>& totals);
   void write_record(const std::string& state, const std::string& message);
@@ -134,12 +138,13 @@ class RunLoop {
   StopWatch stepping_, output_;
   std::filesystem::path saved_;  // the last checkpoint of this run
   std::uint64_t saved_step_ = 0;
+  bool too_fast_ = false;  // and warned about it
 };
 
 template <int D, class E>
 requires Engine<E, D>
 void RunLoop<D, E>::begin() {
-  const auto& [scene, model, group, options, start, program, warnings, program_options, domains, threads, faces] =
+  const auto& [scene, model, group, options, start, limits, program, warnings, program_options, domains, threads, faces] =
       setup_;
   check_trace();
   on_first(group, [&] { make_folder(folder_); });
@@ -152,6 +157,7 @@ void RunLoop<D, E>::begin() {
   record_.warnings = warnings;
   record_.first_step = first_step_;
   record_.time_step = model.dt * model.units.time();
+  record_.limits = limits;
   record_.iota = velocity_quantum * model.units.mass * model.units.velocity;
   record_.ranks = group.size();
   record_.threads = threads;
@@ -166,8 +172,9 @@ void RunLoop<D, E>::begin() {
   say_on_first([&] {
     for (const std::string& warning : setup_.warnings) fmt::print(stderr, "warning: {}\n", warning);
     if (!setup_.options.quiet)
-      fmt::print("{}: steps {} to {}, {} particles, terms: {}; output in {}\n", record_.scene_name, first_step_,
-                 last_step_, record_.particles, fmt::join(term_names(record_.terms), ", "), folder_.string());
+      fmt::print("{}: steps {} to {} {}, {} particles, terms: {}; output in {}\n", record_.scene_name, first_step_,
+                 last_step_, step_text(), record_.particles, fmt::join(term_names(record_.terms), ", "),
+                 folder_.string());
     std::fflush(stdout);
   });
   const ProgressStyle style = group.is_first() ? progress_style(options.quiet) : ProgressStyle::silent;
@@ -248,9 +255,44 @@ void RunLoop<D, E>::sample(const Sample<D>& now) {
   if (solid_series_.has_value()) solid_series_->add(state, sampled_step_);
   if constexpr (requires { engine_.faces(); })
     if (face_series_.has_value()) face_series_->add(state.step, engine_.faces());
+  check_mach(totals, state.fluid);
   for (Solid<D>& solid : state.solids) solid.sampled_impulse = solid.fluid_impulse;
   sampled_step_ = state.step;
   remember(totals);
+}
+
+/// Length of a step, and what limits it.
+template <int D, class E>
+requires Engine<E, D> std::string RunLoop<D, E>::step_text()
+const {
+  const StepLimit ruling = setup_.limits.ruling(), last = setup_.limits.first(&StepLimit::last);
+  if (!std::isfinite(ruling.usual)) return fmt::format("of {:.4g}", record_.time_step);
+  return fmt::format("of {:.4g} ({} rules: {:.4g}; last stable: {:.4g})", record_.time_step, ruling.of, ruling.usual,
+                     last.last);
+}
+
+/// Warns once of a fluid that has become fast beside its sound.
+template <int D, class E>
+requires Engine<E, D>
+void RunLoop<D, E>::check_mach(const Totals<D>& totals, const FluidParticles<D>& fluid) {
+  if (too_fast_ || totals.fluid_count == 0) return;
+  Vec<D, double> mean;
+  for (int axis = 0; axis < D; ++axis)
+    mean[axis] = static_cast<double>(totals.fluid_momentum[axis]) * velocity_quantum /
+                 static_cast<double>(totals.fluid_count);
+  const Fastest<D> fastest = find_fastest(fluid, mean, setup_.group);
+  if (fastest.mach <= largest_local_mach) return;
+  too_fast_ = true;
+  const Model<D>& model = setup_.model;
+  std::vector<double> place;
+  for (int axis = 0; axis < D; ++axis)
+    place.push_back(fastest.position[axis] * model.pair.length[axis] * model.units.length);
+  record_.warnings.push_back(
+      fmt::format("step {}: local Mach number {:.3g} at ({:.6g}), beyond {}: the fluid is compressed there and may tear; a "
+                  "sound speed of {:.3g} would keep it at a tenth",
+                  step(), fastest.mach, fmt::join(place, ", "), largest_local_mach,
+                  10.0 * fastest.mach * model.units.velocity));
+  say_on_first([&] { fmt::print(stderr, "warning: {}\n", record_.warnings.back()); });
 }
 
 template <int D, class E>

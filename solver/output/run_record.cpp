@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <ctime>
 #include <nlohmann/json.hpp>
 
@@ -27,6 +28,16 @@ nlohmann::ordered_json decimal_strings(const std::vector<Int128>& values) {
   auto strings = nlohmann::ordered_json::array();
   for (const Int128 value : values) strings.push_back(fmt::format("{}", value));
   return strings;
+}
+
+/// The limits that there are, in scene units, and the one that rules; what does not limit is left out.
+nlohmann::ordered_json step_limits(const StepLimits& limits) {
+  auto json = nlohmann::ordered_json::object();
+  if (std::isfinite(limits.ruling().usual)) json["ruling"] = limits.ruling().of;
+  for (const StepLimit& limit : limits.all())
+    if (std::isfinite(limit.usual))
+      json[std::string(limit.of)] = {{"usual", limit.usual}, {"doubtful", limit.doubtful}, {"last", limit.last}};
+  return json;
 }
 
 }  // namespace
@@ -66,6 +77,7 @@ std::string run_record_text(const RunRecord& record) {
   json["first_step"] = record.first_step;
   json["steps"] = record.step;
   json["time_step"] = record.time_step;
+  json["step_limits"] = step_limits(record.limits);
   json["wall_seconds"] = nlohmann::ordered_json::object();
   for (const auto& [phase, seconds] : record.wall_seconds) json["wall_seconds"][phase] = seconds;
   json["exchange"] = {{"neighbours", record.neighbours},

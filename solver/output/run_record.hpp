@@ -9,6 +9,7 @@
 
 #include "base/fixed_point.hpp"
 #include "particles/model.hpp"
+#include "physics/step_limit.hpp"
 
 namespace mappm {
 
@@ -22,6 +23,7 @@ struct RunRecord {
   std::vector<std::string> warnings;
   std::uint64_t first_step = 0, step = 0;                    // of this program run: begun at, reached
   double time_step = 0.0;                                    // in scene units
+  StepLimits limits;                                         // of it
   std::vector<std::pair<std::string, double>> wall_seconds;  // by phase
   double messages_per_step = 0.0, bytes_per_step = 0.0;      // sent by the process that sends most
   int neighbours = 0;                                        // most of a process
