@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
@@ -200,6 +201,26 @@ MAPPM_INLINE std::uint32_t sum_of_lanes(const UInt32Lanes& lanes) {
   return static_cast<std::uint32_t>(_mm_cvtsi128_si32(_mm_add_epi32(sum, _mm_shuffle_epi32(sum, 0b10'11'00'01))));
 #else
   return std::experimental::reduce(lanes);
+#endif
+}
+
+/// Writes those of as many numbers as there are lanes that the mask names, side by side, and returns how many these are.
+/// As many as there are lanes are overwritten.
+MAPPM_INLINE std::uint32_t store_chosen(const Lanes::mask_type& chosen, const std::uint32_t* numbers,
+                                        std::uint32_t* to) {
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+  static_assert(sizeof chosen == sizeof(__mmask8), "a bit a lane");
+  const auto bits = detail::same_bits<__mmask8>(chosen);
+  const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(numbers));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_maskz_compress_epi32(bits, all));
+  return static_cast<std::uint32_t>(std::popcount(static_cast<unsigned>(bits)));
+#else
+  std::uint32_t count = 0;
+  for (std::uint32_t lane = 0; lane < static_cast<std::uint32_t>(lane_count); ++lane) {
+    to[count] = numbers[lane];
+    count += chosen[lane] ? 1 : 0;
+  }
+  return count;
 #endif
 }
 

@@ -84,7 +84,7 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
   for (Search& search : searches_) search.measured = 0;
   foreign_.assign(blocks_.size(), 0);
   for (const std::uint32_t i : foreign) foreign_[blocks_.place(i) / lanes] = 1;
-  const auto square = static_cast<typename Numbers::Real>(reach * reach);
+  find_boxes(fluid);
   const std::vector<std::uint8_t> inside = places_in(fluid, region);  // of each place
   std::vector<std::uint8_t> reaches_inside(blocks_.size());           // of each block
   for (std::size_t block = 0; block < blocks_.size(); ++block)
@@ -95,33 +95,49 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
   for_each_band(grid, [&](int first, int last, Search& search, std::size_t band) {
     for (const Part part : {inner, rest}) kept_[parts * band + part].clear();
     for_each_row(grid, first, last, [&](const Vec<D, int>& row) {
-      for_each_block_list(fluid, grid, row, square, search, [&](std::uint32_t place, std::span<const NearBlock> near) {
-        const auto is_foreign = [&](const NearBlock& other) { return foreign_[other.block] != 0; };
+      for_each_block_list(fluid, grid, row, reach, search, [&](std::uint32_t place, std::span<const std::uint32_t> near) {
+        const auto is_foreign = [&](std::uint32_t other) { return foreign_[other] != 0; };
         const bool alone = apart && foreign_[place / lanes] == 0 && std::ranges::none_of(near, is_foreign);
         const bool all = inside[place] != 0;
-        const auto is_wide = [&](const NearBlock& other) { return wide[other.block] != 0 || wide[place / lanes] != 0; };
+        const auto is_wide = [&](std::uint32_t other) { return wide[other] != 0 || wide[place / lanes] != 0; };
         kept_[parts * band + (alone ? inner : rest)].add(
-            place, near, [&](const NearBlock& other) { return all || reaches_inside[other.block] != 0; }, is_wide,
-            [&](const NearBlock& other) { return lanes_near(fluid, place, other.block); });
+            place, near, [&](std::uint32_t other) { return all || reaches_inside[other] != 0; }, is_wide,
+            [&](std::uint32_t other) { return lanes_near(fluid, place, other); });
       });
     });
     for (const Part part : {inner, rest}) blocks_.expect(kept_[parts * band + part].blocks());
   });
 }
 
-/// Calls work(place, blocks) for the PPs of this row: the blocks of later places in which a PP lies within a reach,
-/// whose square is given in rcut^2. They stand in rising order.
+/// The least box around the PPs of each block, rcut.
+template <int D, class Numbers>
+void FluidPass<D, Numbers>::find_boxes(const FluidParticles<D>& fluid) {
+  for (int axis = 0; axis < D; ++axis) {
+    Column<double>&low = box_low_[axis], &high = box_high_[axis];
+    low.resize(blocks_.size());
+    high.resize(blocks_.size());
+    for (std::uint32_t block = 0; block < blocks_.size(); ++block) {
+      const auto first = fluid.x(axis).begin() + blocks_.held(block).first;
+      const auto [least, most] = std::minmax_element(first, first + blocks_.held(block).count);
+      low[block] = *least * model_.pair.length[axis];
+      high[block] = *most * model_.pair.length[axis];
+    }
+  }
+}
+
+/// Calls work(place, blocks) for the PPs of this row: the blocks of later places whose boxes come within the reach (rcut),
+/// in rising order.
 template <int D, class Numbers>
 template <class Work>
 void FluidPass<D, Numbers>::for_each_block_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
-                                                const Vec<D, int>& row, typename Numbers::Real square_of_reach,
-                                                Search& search, Work&& work) {
+                                                const Vec<D, int>& row, double reach, Search& search, Work&& work) {
   const std::size_t cells = grid.row(row);
   const std::uint32_t gap = blocks_.gap(row[D - 1]);
   const std::uint32_t begin = grid.start(cells) + gap;
   const std::uint32_t end = grid.start(cells + static_cast<std::size_t>(grid.count(0))) + gap;
   if (begin == end) return;
   search.near.fit(grid, blocks_, half_rows_, row, false);
+  const double square_of_reach = reach * reach * (1.0 + 1e-6);  // rounding hides no pair
   for (std::uint32_t own = begin / lanes; own * lanes < end; ++own) {
     const std::uint32_t first = std::max(begin, own * lanes), last = std::min(end, (own + 1) * lanes);
     Region<D> box;
@@ -132,52 +148,42 @@ void FluidPass<D, Numbers>::for_each_block_list(const FluidParticles<D>& fluid, 
       box.high[axis] = *high;
     }
     search.near.find(grid, box);
-    std::vector<NearBlock>& candidates = search.candidates;
-    candidates.assign(1, {own});
-    std::uint32_t next = own + 1;  // a block on the border of two rows is found in both
+    Candidates<D>& candidates = search.candidates;
+    std::uint32_t count = 0, next = own + 1;  // a block on the border of two rows is found in both
     for (std::size_t n = 0; n < search.near.count(); ++n) {
       const auto range = search.near.range(grid, n);
-      if (range.end <= range.first) continue;
-      for (next = std::max(next, range.first / lanes); next * lanes < range.end; ++next) candidates.push_back({next});
+      const std::uint32_t from = std::max(next, range.first / lanes), to = (range.end + lanes - 1) / lanes;
+      if (range.end <= range.first || to <= from) continue;
+      candidates.make_room(count + to - from);
+      for (std::uint32_t block = from; block < to; ++block, ++count) {
+        candidates.block[count] = block;
+        for (int axis = 0; axis < D; ++axis) {
+          candidates.low[axis][count] = box_low_[axis][block];
+          candidates.high[axis][count] = box_high_[axis][block];
+        }
+      }
+      next = to;
     }
-    search.measured += candidates.size() * lanes * lanes;
-    if (search.found.size() < candidates.size() * lanes) search.found.resize(candidates.size() * lanes);
-    std::array<std::uint32_t, lanes> counts{};
-    NearBlock* const found = search.found.data();
-    const std::size_t stride = candidates.size();
-    const auto measure = [&]<bool is_own>(const NearBlock& other, std::bool_constant<is_own>)
-        __attribute__((always_inline)) {
-      measure_all<is_own>(own, other.block, square_of_reach, [&](std::uint32_t lane, bool near) {
-        found[lane * stride + counts[lane]] = other;
-        counts[lane] += near ? 1 : 0;
-      });
-    };
-    measure(candidates.front(), std::true_type{});
-    for (std::size_t n = 1; n < candidates.size(); ++n) measure(candidates[n], std::false_type{});
+    candidates.end(count);
+    search.measured += std::uint64_t{count} * (last - first);
+    if (search.found.size() < count + 1 + lane_count) search.found.resize(count + 1 + lane_count);
     for (std::uint32_t place = first; place < last; ++place) {
-      const std::uint32_t lane = place % lanes;
-      work(place, std::span<const NearBlock>(found + lane * stride, counts[lane]));
+      Vec<D, Lanes> x;
+      for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[place - gap] * model_.pair.length[axis];
+      std::uint32_t* const found = search.found.data();
+      std::uint32_t near = 0;
+      if (place % lanes + 1 < blocks_.held(own).count) found[near++] = own;
+      for (std::uint32_t n = 0; n < count; n += lane_count) {
+        Lanes square = 0.0;
+        for (int axis = 0; axis < D; ++axis) {
+          const Lanes low = load_lanes(&candidates.low[axis][n]), high = load_lanes(&candidates.high[axis][n]);
+          const Lanes beside = larger(larger(low - x[axis], x[axis] - high), Lanes(0.0));
+          square += beside * beside;
+        }
+        near += store_chosen(square < square_of_reach, &candidates.block[n], found + near);
+      }
+      work(place, std::span<const std::uint32_t>(found, near));
     }
-  }
-}
-
-/// Calls found(lane, near) for all PPs of a block: whether one of another block lies within the reach, or in the block
-/// itself (`is_own`) a later one.
-template <int D, class Numbers>
-template <bool is_own, class Found>
-MAPPM_INLINE void FluidPass<D, Numbers>::measure_all(std::uint32_t own, std::uint32_t other,
-                                                     typename Numbers::Real square_of_reach, Found&& found) const {
-  using RealLanes = typename Numbers::RealLanes;
-  const PairBlock<D, Numbers>&one = blocks_[own], &two = blocks_[other];
-  for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-    Vec<D, typename Numbers::Place> x;
-    for (int axis = 0; axis < D; ++axis) x[axis] = one.x[axis][lane];
-    const Vec<D, RealLanes> r = detail::separation_of_block<false>(numbers_, two, x);
-    RealLanes square = dot(r, r);
-    if constexpr (is_own)
-      square = larger(square, (RealLanes(static_cast<typename Numbers::Real>(lane + 1)) - lane_numbers<RealLanes>()) *
-                                  RealLanes(square_of_reach));
-    found(lane, any_below(square, square_of_reach));
   }
 }
 

@@ -10,8 +10,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <variant>
@@ -38,6 +40,26 @@ Vec<D, double> cells_per_reach(const Model<D>& model, double reach) {
   for (int axis = 1; axis < D; ++axis) cells[axis] = D == 3 ? std::max(1.0, reach / edge) : 1.0;
   return cells;
 }
+
+/// Blocks near one block, with their boxes (rcut), side by side.
+template <int D>
+struct Candidates {
+  std::vector<std::uint32_t> block;
+  std::array<Column<double>, D> low, high;
+
+  void make_room(std::size_t count) {
+    if (block.size() >= count + lane_count) [[likely]]
+      return;
+    block.resize(2 * count + lane_count);
+    for (auto& values : low) values.resize(block.size());
+    for (auto& values : high) values.resize(block.size());
+  }
+  /// What is read behind the last one lies far away.
+  void end(std::size_t count) {
+    make_room(count);
+    for (std::size_t n = count; n < count + lane_count; ++n) low[0][n] = std::numeric_limits<double>::max();
+  }
+};
 
 /// `Numbers`: DoublePairs or SinglePairs, as the model has it.
 template <int D, class Numbers>
@@ -95,7 +117,7 @@ class FluidPass {
   std::optional<std::vector<PartnerTrace<D>>> trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
                                                     const std::vector<FrozenInStep<D>>& frozen, std::uint64_t particle);
 
-  /// Distances that `list` worked out.
+  /// Distances from boxes that `list` worked out.
   std::uint64_t measured() const {
     std::uint64_t sum = 0;
     for (const Search& search : searches_) sum += search.measured;
@@ -107,15 +129,12 @@ class FluidPass {
  private:
   enum Part : std::size_t { inner, rest, parts };
   using Centre = PairCentre<D, Numbers>;
-  /// A type, not a bare number: with that GCC makes the loop that finds them a sixth slower.
-  struct NearBlock {
-    std::uint32_t block;
-  };
   /// What a thread searches with.
   struct Search {
     NearRows<D> near;
     Lists lists;
-    std::vector<NearBlock> candidates, found;  // near one block; those near each of its PPs
+    Candidates<D> candidates;
+    std::vector<std::uint32_t> found;  // near one PP
     std::uint64_t measured = 0;
     Column<typename Numbers::Real> squares;
   };
@@ -123,9 +142,8 @@ class FluidPass {
   void for_each_row(const CellGrid<D>& grid, int first_plane, int last_plane, Work&& work) const;
   template <class Work>
   void for_each_block_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row,
-                           typename Numbers::Real square_of_reach, Search& search, Work&& work);
-  template <bool is_own, class Found>
-  void measure_all(std::uint32_t own, std::uint32_t other, typename Numbers::Real square_of_reach, Found&& found) const;
+                           double reach, Search& search, Work&& work);
+  void find_boxes(const FluidParticles<D>& fluid);
   std::uint16_t lanes_near(const FluidParticles<D>& fluid, std::uint32_t place, std::uint32_t block) const;
   template <class Work>
   void for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
@@ -156,6 +174,7 @@ class FluidPass {
   std::vector<Vec<D, int>> half_rows_, all_rows_;
   std::vector<Search> searches_;  // of the threads
   PairBlocks<D, Numbers> blocks_;
+  std::array<Column<double>, D> box_low_, box_high_;  // of the blocks, rcut
   std::vector<KeptLists<D, Numbers>> kept_;  // of each band one for each part
   std::vector<std::uint8_t> foreign_;        // of each block: whether it holds a foreign PP
   bool serves_on_ = false;                   // the lists, beyond this step

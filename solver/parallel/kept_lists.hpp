@@ -27,21 +27,22 @@ class KeptLists {
 
   /// Adds those of the `near` blocks of a centre that are `chosen`; none occurs twice. Where `named`, only some lanes
   /// of them count, one a bit: partners(block).
-  template <class Near, class Chosen, class NamedBlocks, class LanesOf>
-  MAPPM_INLINE void add(std::uint32_t place, std::span<const Near> near, const Chosen& chosen, const NamedBlocks& named,
+  template <class Chosen, class NamedBlocks, class LanesOf>
+  MAPPM_INLINE void add(std::uint32_t place, std::span<const std::uint32_t> near, const Chosen& chosen,
+                        const NamedBlocks& named,
                         const LanesOf& partners) {
     const std::size_t first = blocks_.size();
     reserve_tightly(blocks_, first + near.size());
     blocks_.resize(first + near.size());
     std::size_t end = first;
-    for (const Near& one : near) {
+    for (const std::uint32_t one : near) {
       if (!chosen(one)) continue;
       if (Numbers::largest_extent != std::numeric_limits<double>::infinity() && named(one)) {
         const std::uint16_t lanes_of_one = partners(one);
         if (lanes_of_one == 0) continue;
         named_.push_back({static_cast<std::uint32_t>(end), lanes_of_one});
       }
-      blocks_[end++] = one.block;
+      blocks_[end++] = one;
     }
     blocks_.resize(end);
     if (end > first) centres_.push_back({place, static_cast<std::uint32_t>(end)});
