@@ -55,7 +55,7 @@ void ParallelEngine<D>::rebalance() {
   state();
   if (communicator_.size() > 1) {
     domains_ = domains_by_load(model_, domains_, communicator_, state_);
-    redistribute(model_, domains_, communicator_, state_);
+    redistribute(domains_, communicator_, state_);
   }
   start_domains();
 }

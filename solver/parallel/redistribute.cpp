@@ -33,7 +33,7 @@ Domains<D> domains_by_load(const Model<D>& model, const Domains<D>& domains, con
 }
 
 template <int D>
-void redistribute(const Model<D>& model, const Domains<D>& domains, const Communicator& communicator, State<D>& state) {
+void redistribute(const Domains<D>& domains, const Communicator& communicator, State<D>& state) {
   std::vector<Buffer> out(static_cast<std::size_t>(communicator.size()));
   const FluidParticles<D>& fluid = state.fluid;
   std::vector<int> owner(fluid.size());
@@ -75,7 +75,7 @@ void redistribute(const Model<D>& model, const Domains<D>& domains, const Commun
 
 #define MAPPM_INSTANTIATE(D)                                                                                        \
   template Domains<D> domains_by_load<D>(const Model<D>&, const Domains<D>&, const Communicator&, const State<D>&); \
-  template void redistribute<D>(const Model<D>&, const Domains<D>&, const Communicator&, State<D>&);
+  template void redistribute<D>(const Domains<D>&, const Communicator&, State<D>&);
 MAPPM_INSTANTIATE(2)
 MAPPM_INSTANTIATE(3)
 #undef MAPPM_INSTANTIATE

@@ -15,6 +15,6 @@ Domains<D> domains_by_load(const Model<D>& model, const Domains<D>& domains, con
 
 /// Sends every PP and solid to its owner under `domains`.
 template <int D>
-void redistribute(const Model<D>& model, const Domains<D>& domains, const Communicator& communicator, State<D>& state);
+void redistribute(const Domains<D>& domains, const Communicator& communicator, State<D>& state);
 
 }  // namespace mappm

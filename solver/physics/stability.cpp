@@ -133,12 +133,13 @@ std::vector<LatticeWave> lattice_waves(KernelKind kernel, double reach) {
   return waves;
 }
 
-/// The eigenvalues of the step, a matrix of two rows, are above -1 (Jury's criterion).
+/// The eigenvalues of the step, a matrix of two rows, are above -1 (Jury's criterion): its characteristic polynomial is
+/// not negative at -1, and rises there.
 bool is_stable(const LatticeWave& wave, double step, double viscosity, double shift_rate) {
   const double damping = 1.0 - step * viscosity * wave.friction;
   const double shifted = 1.0 + step * shift_rate * (wave.shift + wave.pressure);
-  return damping >= -1.0 && shifted >= -1.0 &&
-         (1.0 + damping) * (1.0 + shifted) >= step * step * wave.pressure;
+  const double sound = step * step * wave.pressure;
+  return damping + shifted - sound >= -2.0 && (1.0 + damping) * (1.0 + shifted) >= sound;
 }
 
 namespace {

@@ -29,9 +29,9 @@ namespace {
 
 constexpr const char* scene_text = "[fluid]\nspacing = 0.5\n[run]\nsteps = 10\n";
 
-constexpr std::array data_sets{"/scene",     "/fluid/id",      "/fluid/x_x",    "/fluid/x_y",      "/fluid/v_x",
-                               "/fluid/v_y", "/fluid/density", "/solids/words", "/solids/density", "/solids/contacts"};
-constexpr std::array attributes{"format",       "version", "dimension",   "scene_hash",     "step",
+constexpr std::array data_sets{"/scene",     "/fluid/id",  "/fluid/x_x",    "/fluid/x_y",
+                               "/fluid/v_x", "/fluid/v_y", "/solids/words", "/solids/contacts"};
+constexpr std::array attributes{"format",       "version", "numerics",    "dimension",      "scene_hash",     "step",
                                 "sampled_step", "digest",  "ledger_hash", "start_momentum", "outside_impulse"};
 constexpr std::size_t names = data_sets.size() + attributes.size();
 

@@ -47,8 +47,8 @@ class ToyRun : public testing::Test {
   Start<2> start() {
     if (!options_.resume.empty()) return start_run<2>(scene_, model_, Region<2>::whole_box(), options_, group_);
     Start<2> start;
-    hand::add_pp(start.state, 0, {{0.25, 0.25}}, {}, 8.0);
-    hand::add_pp(start.state, 1, {{0.75, 0.25}}, {}, 8.0);
+    hand::add_pp(start.state, 0, {{0.25, 0.25}}, {});
+    hand::add_pp(start.state, 1, {{0.75, 0.25}}, {});
     return start;
   }
   /// Runs and returns what was printed on standard output.

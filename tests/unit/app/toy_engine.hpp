@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <string>
+#include <vector>
 
 #include "particles/engine.hpp"
 #include "particles/model.hpp"
@@ -25,6 +26,7 @@ class ToyEngine {
   }
   std::uint64_t present_step() const { return state_.step; }
   State<2>& state() { return state_; }
+  Sample<2> sample() { return {state_, {std::vector<double>(state_.fluid.size(), 8.0), {}}}; }
   const std::string& range_error() const { return error_; }
   PhaseSeconds phase_seconds() const { return {{"toy", 0.5}}; }
   void trace_next_step(std::uint64_t particle) { trace_ = StepTrace<2>{state_.step, particle, {}}; }

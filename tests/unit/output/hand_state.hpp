@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "particles/density_field.hpp"
 #include "particles/model.hpp"
-#include "particles/state.hpp"
 
 namespace mappm::hand {
 
@@ -41,13 +41,12 @@ inline Model<2> model() {
 }
 
 /// x: fractions of the box.
-inline void add_pp(State<2>& state, std::uint64_t id, Vec<2, double> x, Vec<2, double> v, double density) {
+inline void add_pp(State<2>& state, std::uint64_t id, Vec<2, double> x, Vec<2, double> v) {
   state.fluid.id.push_back(id);
   for (int axis = 0; axis < 2; ++axis) {
     state.fluid.x(axis).push_back(x[axis] * box_quanta);
     state.fluid.v(axis).push_back(v[axis]);
   }
-  state.fluid.density().push_back(density);
 }
 
 inline Solid<2> solid(std::uint64_t id, std::uint32_t shape, SolidMotion motion, Vec<2, double> x) {
@@ -56,7 +55,6 @@ inline Solid<2> solid(std::uint64_t id, std::uint32_t shape, SolidMotion motion,
   solid.shape = shape;
   solid.motion = motion;
   for (int axis = 0; axis < 2; ++axis) solid.x[axis] = x[axis] * box_quanta;
-  solid.density.assign(shape == 0 ? 1 : 2, 8.5);
   return solid;
 }
 
@@ -64,10 +62,10 @@ inline Solid<2> solid(std::uint64_t id, std::uint32_t shape, SolidMotion motion,
 inline State<2> state() {
   State<2> state;
   state.step = 6;
-  add_pp(state, 0, {{0.125, 0.25}}, {{0.5, 0.0}}, 7.0);
-  add_pp(state, 1, {{0.375, 0.25}}, {{0.25, 0.5}}, 8.0);
-  add_pp(state, 2, {{0.625, 0.75}}, {{-0.25, 0.0}}, 9.0);
-  add_pp(state, 3, {{0.875, 0.75}}, {{0.0, 0.0}}, 8.0);
+  add_pp(state, 0, {{0.125, 0.25}}, {{0.5, 0.0}});
+  add_pp(state, 1, {{0.375, 0.25}}, {{0.25, 0.5}});
+  add_pp(state, 2, {{0.625, 0.75}}, {{-0.25, 0.0}});
+  add_pp(state, 3, {{0.875, 0.75}}, {{0.0, 0.0}});
 
   Solid<2> free = solid(0, 0, SolidMotion::free, {{0.5, 0.5}});
   free.momentum = iota(8.0, -4.0);
@@ -95,6 +93,23 @@ inline State<2> state() {
   state.start_momentum = iota(12.0, -4.0);
   state.outside_impulse = iota(0.5, 0.5);
   return state;
+}
+
+/// With densities of 7, 8, 9 and 8 at the four PPs, and of 8.5 at the FPs. `of`: the state above, or a part of it.
+inline Sample<2> sample(State<2>& of) {
+  constexpr double densities[] = {7.0, 8.0, 9.0, 8.0};
+  Sample<2> sample{of, {}};
+  for (const std::uint64_t id : of.fluid.id) sample.density.fluid.push_back(densities[id]);
+  const Model<2> model = hand::model();
+  for (const Solid<2>& solid : of.solids) {
+    const std::vector<FrozenParticle<2>>& frozen = model.shapes[solid.shape].frozen;
+    const RigidVelocity<2> velocity = rigid_velocity(solid, model.shapes[solid.shape]);
+    for (std::uint32_t k = 0; k < frozen.size(); ++k) {
+      const PlacedFrozen<2> placed = place(solid, velocity, frozen[k], model.pair.length);
+      sample.density.frozen.push_back({solid.id, k, placed.x, placed.v, 8.5});
+    }
+  }
+  return sample;
 }
 
 }  // namespace mappm::hand

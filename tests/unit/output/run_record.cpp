@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/numerics_version.hpp"
 #include "unit/output/scratch_folder.hpp"
 
 namespace mappm {
@@ -60,6 +61,7 @@ TEST(RunRecord, has_every_key_that_readers_rely_on) {
   EXPECT_EQ(json["domains"], nlohmann::json({2, 2}));
   EXPECT_EQ(json["borders"], nlohmann::json({{0.0, 0.25, 1.0}, {0.0, 1.5, 2.0}}));
   EXPECT_EQ(json["scene"]["text"], "name = 'a'\n");
+  EXPECT_EQ(json["numerics_version"], numerics_version);
   EXPECT_FALSE(json.contains("message"));
 }
 

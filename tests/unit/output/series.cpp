@@ -26,7 +26,7 @@ constexpr const char* si_header =
 Columns hand_columns(const UnitNames& units) {
   State<2> state = hand::state();
   state.outside_impulse = hand::iota(0.25, 0.5);  // leaves a defect of a quarter: 2^46 iota
-  return series_columns(hand::model(), units, measure(hand::model(), state, SingleGroup()), state.start_momentum, 4);
+  return series_columns(hand::model(), units, measure(hand::model(), hand::sample(state), SingleGroup()), state.start_momentum, 4);
 }
 
 TEST(Series, row_is_the_one_worked_by_hand) {
@@ -68,7 +68,7 @@ TEST(Series, of_a_scene_without_solids_has_no_column_of_theirs) {
 TEST(Series, drag_is_the_mean_over_sps_fixed_or_not) {
   State<2> state = hand::state();
   state.solids.resize(2);  // one free, one fixed; impulses (4, 1) and (0, -3)
-  const Totals<2> totals = measure(hand::model(), state, SingleGroup());
+  const Totals<2> totals = measure(hand::model(), hand::sample(state), SingleGroup());
   const std::string row = series_columns(hand::model(), {}, totals, state.start_momentum, 4).row();
   EXPECT_NE(row.find(",512,-256,0,0,"), std::string::npos) << row;
 }
@@ -77,7 +77,8 @@ TEST(Series, goes_on_after_a_restart_as_if_there_had_been_none) {
   const ScratchFolder folder;
   const Model<2> model = hand::model();
   const SingleGroup group;
-  Totals<2> totals = measure(model, hand::state(), group);
+  State<2> state = hand::state();
+  Totals<2> totals = measure(model, hand::sample(state), group);
   const auto write = [&](std::optional<std::uint64_t> resumed, std::initializer_list<std::uint64_t> steps) {
     Series<2> series(folder.path(), model, si_unit_names(2), group, resumed);
     for (const std::uint64_t step : steps) {

@@ -35,7 +35,7 @@ class Snapshot : public testing::Test {
   Snapshot() {
     State<2> state = hand::state();
     state.solids = {state.solids[0], state.solids[2]};
-    write_snapshot(folder_.path(), hand::model(), state, 4, SingleGroup());
+    write_snapshot(folder_.path(), hand::model(), hand::sample(state), 4, SingleGroup());
   }
   ScratchFolder folder_;
   fs::path fluid_ = folder_ / "fluid_000000006.vtkhdf", solids_ = folder_ / "solids_000000006.vtkhdf";
@@ -85,16 +85,17 @@ TEST_F(Snapshot, of_walls_alone_has_no_file_of_solids) {
   Model<2> model = hand::model();
   model.shapes = {model.shapes[1]};
   State<2> state;
-  write_snapshot(folder.path() / "walls", model, state, 0, SingleGroup());
+  write_snapshot(folder.path() / "walls", model, hand::sample(state), 0, SingleGroup());
   EXPECT_TRUE(fs::exists(folder / "walls/fluid_000000000.vtkhdf"));
   EXPECT_FALSE(fs::exists(folder / "walls/solids_000000000.vtkhdf"));
 }
 
 TEST_F(Snapshot, leaves_nothing_half_written_on_a_full_disk) {
   const fs::path folder = folder_ / "full";
+  State<2> state = hand::state();
   const std::string message = [&] {
     const testing_tools::SmallDisk disk(2000);
-    return refusal<InputError>([&] { write_snapshot(folder, hand::model(), hand::state(), 4, SingleGroup()); });
+    return refusal<InputError>([&] { write_snapshot(folder, hand::model(), hand::sample(state), 4, SingleGroup()); });
   }();
   EXPECT_TRUE(contains(message, "cannot be written: File too large")) << message;
   EXPECT_TRUE(fs::is_empty(folder));

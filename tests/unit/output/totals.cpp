@@ -15,7 +15,8 @@ namespace {
 double momentum(Int128 iota) { return static_cast<double>(iota) * velocity_quantum; }
 
 TEST(Totals, are_the_sums_worked_by_hand) {
-  const Totals<2> totals = measure(hand::model(), hand::state(), SingleGroup());
+  State<2> state = hand::state();
+  const Totals<2> totals = measure(hand::model(), hand::sample(state), SingleGroup());
   EXPECT_EQ(totals.step, 6u);
   EXPECT_TRUE(totals.fluid_count == 4 && totals.frozen_count == 5);
   EXPECT_TRUE(totals.sp_count == 3 && totals.mobile_count == 2) << "the piece of a wall is no SP";
@@ -42,7 +43,8 @@ TEST(Totals, are_the_sums_worked_by_hand) {
 }
 
 TEST(Totals, do_not_depend_on_how_many_processes_hold_the_state) {
-  const Totals<2> whole = measure(hand::model(), hand::state(), SingleGroup());
+  State<2> state = hand::state();
+  const Totals<2> whole = measure(hand::model(), hand::sample(state), SingleGroup());
   testing_tools::ThreadGroup(2).run([&](const Group& group) {
     State<2> half = hand::state();
     const bool first = group.is_first();
@@ -54,7 +56,7 @@ TEST(Totals, do_not_depend_on_how_many_processes_hold_the_state) {
     for (auto& field : half.fluid.field) keep(field);
     keep(half.solids);
     half.outside_impulse = first ? hand::iota(2.5, 0.5) : hand::iota(-2.0, 0.0);
-    const Totals<2> totals = measure(hand::model(), half, group);
+    const Totals<2> totals = measure(hand::model(), hand::sample(half), group);
     EXPECT_EQ(totals.digest(), whole.digest());
     EXPECT_TRUE(totals.momentum == whole.momentum && totals.outside_impulse == whole.outside_impulse);
     EXPECT_TRUE(totals.sp_impulse == whole.sp_impulse && totals.mobile_velocity == whole.mobile_velocity);
@@ -67,24 +69,25 @@ TEST(Totals, do_not_depend_on_how_many_processes_hold_the_state) {
 
 TEST(Totals, of_angular_momentum_do_not_depend_on_the_image_of_a_solid) {
   State<2> state = hand::state();
-  const Totals<2> inside = measure(hand::model(), state, SingleGroup());
+  const Totals<2> inside = measure(hand::model(), hand::sample(state), SingleGroup());
   state.solids[3].momentum = hand::iota(4.0, 2.0);
-  const Totals<2> turned = measure(hand::model(), state, SingleGroup());
+  const Totals<2> turned = measure(hand::model(), hand::sample(state), SingleGroup());
   EXPECT_EQ(static_cast<double>((turned.angular_momentum - inside.angular_momentum)[0]) * angular_quantum, 2.0);
   state.solids[3].x[0] -= box_quanta;
-  EXPECT_TRUE(measure(hand::model(), state, SingleGroup()).angular_momentum == turned.angular_momentum);
+  EXPECT_TRUE(measure(hand::model(), hand::sample(state), SingleGroup()).angular_momentum == turned.angular_momentum);
 }
 
 TEST(Totals, of_the_ledger_close_exactly_and_show_a_single_quantum) {
   State<2> state = hand::state();
-  EXPECT_TRUE(momentum_defect(measure(hand::model(), state, SingleGroup()), state.start_momentum) == hand::iota(0, 0));
+  EXPECT_TRUE(momentum_defect(measure(hand::model(), hand::sample(state), SingleGroup()), state.start_momentum) == hand::iota(0, 0));
   state.solids[3].momentum[1] += 1;
-  const auto defect = momentum_defect(measure(hand::model(), state, SingleGroup()), state.start_momentum);
+  const auto defect = momentum_defect(measure(hand::model(), hand::sample(state), SingleGroup()), state.start_momentum);
   EXPECT_TRUE(defect[0] == 0 && defect[1] == 1);
 }
 
 TEST(Totals, of_no_fluid_have_no_density) {
-  const Totals<2> totals = measure(hand::model(), State<2>{}, SingleGroup());
+  State<2> none;
+  const Totals<2> totals = measure(hand::model(), hand::sample(none), SingleGroup());
   EXPECT_TRUE(std::isnan(totals.lowest_density) && std::isnan(totals.highest_density));
 }
 

@@ -52,7 +52,6 @@ FluidParticles<D> scatter(const Place<D>& place, std::size_t count) {
       fluid.x(axis)[i] = random() % 4 == 0 ? borders[random() % 8] : std::floor(anywhere(random));
       fluid.v(axis)[i] = static_cast<double>(i) + 0.25 * axis;
     }
-    fluid.density()[i] = -static_cast<double>(i);
   }
   return fluid;
 }

@@ -30,7 +30,6 @@ Model<D> model_with_frozen() {
 TEST(Frozen, only_those_in_the_region_are_placed_with_the_velocity_of_the_body) {
   const Model<2> model = model_with_frozen<2>();
   Solid<2> solid = hand_solid(model, 0, 0, {{2.0, 4.0}}, {{0.25, 0.0}});
-  solid.density = {8.0, 10.0};
   solid.angular_momentum[0] = Int128{1} << 46;  // inertia 1: omega = 1/4
   const double quantum = model.pair.length[0];
   const Region<2> right{{{2.1 / quantum, 0.0}}, {{8.0 / quantum, box_quanta}}};
@@ -44,8 +43,6 @@ TEST(Frozen, only_those_in_the_region_are_placed_with_the_velocity_of_the_body) 
   EXPECT_EQ(frozen[0].place.v, (Vec<2, double>{{0.25, 0.125}}));  // v + omega x (1/2, 0)
   EXPECT_EQ(frozen[0].depth, 0.5);
   EXPECT_EQ(frozen[0].own_density, 4.0);
-  EXPECT_EQ(frozen[0].volume.v2, 1.0 / 64.0);            // density 8
-  EXPECT_EQ(frozen[0].volume.pv2, (8.0 - 10.0) / 64.0);  // p = c^2 (rho - rho0)
   place_frozen(model, body, 7, Region<2>::whole_box(), frozen);
   EXPECT_EQ(frozen.size(), 3u);
 }
@@ -53,7 +50,6 @@ TEST(Frozen, only_those_in_the_region_are_placed_with_the_velocity_of_the_body) 
 TEST(Frozen, an_impulse_on_one_turns_its_body_by_lever_cross_impulse) {
   const Model<2> model = model_with_frozen<2>();
   Solid<2> solid = hand_solid(model, 0, 0, {{2.0, 4.0}}, {});
-  solid.density = {10.0, 10.0};
   solid.orientation.component = {{0.0, 1.0}};  // a quarter turn: the front FP is at (0, 1/2)
   std::vector<FrozenInStep<2>> frozen;
   place_frozen(model, solid_in_step(model, solid), 0, Region<2>::whole_box(), frozen);
@@ -71,7 +67,6 @@ TEST(Frozen, an_impulse_on_one_turns_its_body_by_lever_cross_impulse) {
 TEST(Frozen, torque_in_space_by_hand) {
   const Model<3> model = model_with_frozen<3>();
   Solid<3> solid = hand_solid(model, 0, 0, {{2.0, 4.0, 1.0}}, {});
-  solid.density = {10.0, 10.0};
   std::vector<FrozenInStep<3>> frozen;
   place_frozen(model, solid_in_step(model, solid), 0, Region<3>::whole_box(), frozen);
   SolidImpulse<3> load;
@@ -79,10 +74,44 @@ TEST(Frozen, torque_in_space_by_hand) {
   EXPECT_TRUE((load.angular == AngularVec<3, Int128>{{0, -16, 8}}));  // lever to the surface, (1, 0, 0) x (5, 8, 16)
 }
 
-TEST(Frozen, density_is_the_sum_and_its_own_bodys_share) {
+TEST(Frozen, has_the_volume_and_pressure_of_its_density) {
   FrozenInStep<2> fp;
-  fp.own_density = 4.0;
-  EXPECT_EQ(frozen_density(fp, std::int64_t{3} << 44), 7.0);  // quantum 2^-44
+  set_density(model_with_frozen<2>(), fp, 8.0);
+  EXPECT_EQ(fp.density, 8.0);
+  EXPECT_EQ(fp.volume.v2, 1.0 / 64.0);
+  EXPECT_EQ(fp.volume.pv2, (8.0 - 10.0) / 64.0);  // p = c^2 (rho - rho0)
+}
+
+TEST(Frozen, is_shown_with_the_number_of_its_solid) {
+  const Model<2> model = model_with_frozen<2>();
+  const Solid<2> solid = hand_solid(model, 7, 0, {{2.0, 4.0}}, {{0.25, 0.0}});
+  std::vector<FrozenInStep<2>> frozen;
+  place_frozen(model, solid_in_step(model, solid), 3, Region<2>::whole_box(), frozen);
+  ASSERT_EQ(frozen.size(), 2u);
+  set_density(model, frozen[1], 9.5);
+  const FrozenPoint<2> point = point_of(frozen[1], solid);
+  EXPECT_EQ(point.solid, 7u);
+  EXPECT_EQ(point.index, 1u);
+  EXPECT_EQ(point.x, (Vec<2, double>{{2.0 / model.pair.length[0], 4.25 / model.pair.length[1]}}));
+  EXPECT_EQ(point.v, (Vec<2, double>{{0.25, 0.0}}));
+  EXPECT_EQ(point.density, 9.5);
+}
+
+TEST(Frozen, of_different_solids_and_of_images_of_one_body_give_each_other_density) {
+  Model<2> model = model_with_frozen<2>();
+  model.shapes[1].balls.clear();  // a piece of a wall
+  const Solid<2> one = hand_solid(model, 0, 0, {{2.0, 4.0}}, {}), other = hand_solid(model, 1, 0, {{6.0, 4.0}}, {});
+  EXPECT_TRUE(give_each_other_density(model, one, other, false));
+  EXPECT_TRUE(give_each_other_density(model, one, other, true));
+  EXPECT_FALSE(give_each_other_density(model, one, one, false)) << "the share of a body in itself is part of its shape";
+  EXPECT_TRUE(give_each_other_density(model, one, one, true));
+  Solid<2> piece = hand_solid(model, 2, 1, {{2.0, 1.0}}, {}), next = hand_solid(model, 3, 1, {{4.0, 1.0}}, {});
+  next.group = piece.group;
+  for (const bool images : {false, true}) {
+    EXPECT_FALSE(give_each_other_density(model, piece, next, images)) << "they share the layer of one wall";
+    EXPECT_FALSE(give_each_other_density(model, piece, piece, images)) << "a wall goes on beyond its piece";
+    EXPECT_TRUE(give_each_other_density(model, piece, one, images));
+  }
 }
 
 }  // namespace

@@ -282,39 +282,30 @@ TEST(FinishStep, a_solid_that_moves_too_far_stays_and_is_reported) {
   EXPECT_TRUE(fast.momentum == before.momentum);
 }
 
-TEST(FinishStep, a_density_out_of_range_is_reported) {
-  Model<2> model = hand_model<2>();  // rest density 10
-  Vec<2, Int128> outside{};
-  Solid<2> solid = hand_solid(model, 4, 0, {{2.0, 4.0}}, {});
-  solid.density = {100.0, 1.0};
-  EXPECT_EQ(finish_step(model, 3, solid, {}, outside), "");
-  solid.density = {100.0, 0.5};
-  EXPECT_EQ(
-      finish_step(model, 3, solid, {}, outside),
-      "step 3: solid 4: density at its frozen particle 1 is 0.05 times rest, outside 0.1 to 10; the fluid tears or "
-      "collapses there: raise the sound speed or resolve the gap");
+TEST(DensityMessage, names_step_place_value_and_cause) {
+  EXPECT_EQ(density_message(3, frozen_text(4, 1), 0.05),
+            "step 3: solid 4, frozen particle 1: density 0.05 times rest, outside 0.1 to 10; the fluid tears or collapses "
+            "there: raise the sound speed or resolve the gap");
+  EXPECT_EQ(density_message(12, particle_text(345), 15.0).find("step 12: particle 345: density 15 times rest"), 0u);
 }
 
 TEST(ParticleStepConstants, by_hand) {
   Model<3> model = hand_model<3>();
   model.terms.body_force = true;
   model.relax = 2;
-  model.self_density = 0.75;
+  model.shift_vorticity = 0.75;
   model.fluid_kick = {{0x1p-20, 0.0, -0x1p-21}};
   EXPECT_EQ(particle_step(model, 1).kick, (Vec<3, double>{}));
   const ParticleStep<3> step = particle_step(model, 2);
   EXPECT_EQ(step.kick, model.fluid_kick);
   EXPECT_EQ(step.drift[1], hand_dt * box_quanta / 8.0);
   EXPECT_EQ(step.largest_drift[2], 0.25 * box_quanta / 8.0);
-  EXPECT_EQ(step.self_density, 0.75);
-  EXPECT_EQ(step.lowest_density, 1.0);
-  EXPECT_EQ(step.highest_density, 100.0);
+  EXPECT_EQ(step.vorticity, 0.75);
 }
 
 TEST(RangeMessage, names_step_particle_value_and_cause) {
   NeighbourSums<2> sums{};
   sums.impulse = {{5, -(std::int64_t{1} << 51)}};  // the larger of the two is named
-  sums.density = std::int64_t{3} << 43;
   EXPECT_EQ(
       range_message<2>(RangeFault::impulse, 12, 345, {}, sums),
       "step 12: particle 345: impulse -8 m c is too large for its fixed-point range; particles overlap or the step "
@@ -323,9 +314,6 @@ TEST(RangeMessage, names_step_particle_value_and_cause) {
       range_message<2>(RangeFault::displacement, 12, 345, {{3.0, 4.0}}, sums),
       "step 12: particle 345: moves more than rcut/4 in one step (velocity 5 c before it); the step is too long or "
       "the sound speed too low");
-  EXPECT_EQ(range_message<2>(RangeFault::density, 12, 345, {}, sums),
-            "step 12: particle 345: density 1.5 PPs per rcut^2 is outside 0.1 to 10 times rest; the fluid tears or "
-            "collapses: raise the sound speed or resolve the gap");
   EXPECT_EQ(range_message<2>(RangeFault::none, 12, 345, {}, sums), "");
 }
 

@@ -28,7 +28,6 @@ State<D> small_state() {
       solid.momentum[axis] = (Int128{1} << 70) + axis;
       solid.fluid_impulse[axis] = 7 + axis;
     }
-    solid.density = {0.5, 0.25};
     Contact<D> contact;
     contact.partner = 1 - id;
     contact.stretch[0] = 0.125;
@@ -85,13 +84,11 @@ std::vector<std::function<void(State<D>&)>> single_changes() {
   for (int i = 0; i < (D == 2 ? 2 : 4); ++i)
     changes.push_back([=](State<D>& s) { s.solids[0].orientation.component[i] += 0x1p-52; });
   changes.push_back([](State<D>& s) { s.solids[0].id = 9; });
-  changes.push_back([](State<D>& s) { s.solids[0].density[1] += density_quantum; });
   changes.push_back([](State<D>& s) { s.solids[0].contacts[0].partner = 5; });
   changes.push_back([](State<D>& s) { s.solids[0].contacts[0].own = 1; });
   changes.push_back([](State<D>& s) { s.solids[0].contacts[0].other = 1; });
   changes.push_back([](State<D>& s) { s.solids[0].contacts.clear(); });
   changes.push_back([](State<D>& s) { std::swap(s.fluid.field[0][0], s.fluid.field[0][1]); });
-  changes.push_back([](State<D>& s) { std::swap(s.solids[0].density[0], s.solids[0].density[1]); });
   return changes;
 }
 

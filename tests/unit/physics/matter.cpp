@@ -92,7 +92,7 @@ double share_behind_plane(double depth) {
     const double edge = std::sqrt(1.0 - z * z);
     for (int k = 0; k < rings; ++k) {
       const double s = (k + 0.5) * edge / rings;
-      slice += Kernel::at(std::min(1.0, std::hypot(s, z))).weight * (D == 3 ? s : 1.0) * edge / rings;
+      slice += Kernel::weight(std::min(1.0, std::hypot(s, z))) * (D == 3 ? s : 1.0) * edge / rings;
     }
     whole += slice;
     if (z < depth) inside += slice;

@@ -16,7 +16,14 @@ template <int D>
 struct Fluid {
   std::array<double, D> spacing;
   std::array<double, D> box;
-  double mu, dt, shift_pressure;
+  double mu, dt, shift_rate;
+
+  /// Volume of a PP at rest.
+  double volume() const {
+    double volume = 1.0;
+    for (const double side : spacing) volume *= side;
+    return volume;
+  }
 };
 
 template <int D, class Kernel>
@@ -32,18 +39,17 @@ PairLaw<D> make_law(const Fluid<D>& fluid) {
   PairLaw<D> law;
   for (int axis = 0; axis < D; ++axis) {
     law.length[axis] = fluid.box[axis] / box_quanta;
-    // displacement u dt of an impulse G (V_i^2 + V_j^2) r dt: times p_s dt / 2
-    law.shift[axis] = velocity_quantum * fluid.shift_pressure * 0.5 * fluid.dt / law.length[axis];
+    // displacement u dt of an impulse G (V_i^2 + V_j^2) r dt: times kappa c h / (2 V_0), h = 1/2
+    law.shift[axis] = velocity_quantum * fluid.shift_rate * 0.5 / (2.0 * fluid.volume()) / law.length[axis];
   }
   law.force = scale.gradient * fluid.dt / velocity_quantum;
   law.viscosity = fluid.mu;
   law.weight = scale.weight / density_quantum;
-  law.rate = scale.rate * fluid.dt / density_quantum;
   return law;
 }
 
-inline Fluid<2> plane_fluid() { return {{0.3125, 0.3125}, {4.0, 5.0}, 0.02, 0.0078125, 1.0}; }
-inline Fluid<3> space_fluid() { return {{0.375, 0.34375, 0.40625}, {6.0, 5.5, 6.5}, 0.02, 0.0078125, 1.0}; }
+inline Fluid<2> plane_fluid() { return {{0.3125, 0.3125}, {4.0, 5.0}, 0.02, 0.0078125, 0.5}; }
+inline Fluid<3> space_fluid() { return {{0.375, 0.34375, 0.40625}, {6.0, 5.5, 6.5}, 0.02, 0.0078125, 0.5}; }
 
 /// Separations up to 1.5 cutoffs, so that about half of the pairs lie beyond it; densities about rho0.
 template <int D>
@@ -64,6 +70,13 @@ template <class Kernel, bool transport, int D, class Real>
 auto interact(const PairLaw<D, Scalar<Real>>& law, const FluidPair<D, Real>& pair, const Real& beta) {
   const Vec<D, Real> r = separation(law, pair.d);
   return fluid_pair<Kernel, transport>(law, pair, r, cut_distance(dot(r, r)), beta);
+}
+
+/// The density that the two give each other.
+template <class Kernel, int D, class Real>
+Fixed<Real> shared_density(const PairLaw<D, Scalar<Real>>& law, const FluidPair<D, Real>& pair) {
+  const Vec<D, Real> r = separation(law, pair.d);
+  return pair_density<Kernel>(law, cut_distance(dot(r, r)));
 }
 
 }  // namespace mappm::testing

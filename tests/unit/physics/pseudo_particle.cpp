@@ -8,46 +8,76 @@
 namespace mappm {
 namespace {
 
-/// A velocity of 1 drifts 2^20 quanta along x and 2^21 along y; densities from 8 to 12.
+/// A velocity of 1 drifts 2^20 quanta along x and 2^21 along y; a vorticity of 2^20 iota allows the whole shift.
 ParticleStep<2> make_step() {
   ParticleStep<2> step;
   step.drift = {{0x1p20, 0x1p21}};
   step.kick = {{0.0, -0x1p-10}};
   step.largest_drift = {{0x1p21, 0x1p21}};
-  step.self_density = 2.0;
-  step.lowest_density = 8.0;
-  step.highest_density = 12.0;
+  step.vorticity = 0x1p-20;
   return step;
 }
 
 struct Particle {
   Vec<2, double> x{{1000.0, 5.0}}, v{{0.25, 0.0}};
-  double density = 10.0;
 };
 
 NeighbourSums<2> make_sums() {
   NeighbourSums<2> sums;
   sums.impulse = {{std::int64_t{1} << 46, 0}};  // 1/4
   sums.shift = {{3, -4}};
-  sums.density = std::int64_t{7} << 44;
+  sums.vorticity = {{std::int64_t{1} << 20}};
   return sums;
 }
 
 TEST(PseudoParticle, is_kicked_then_drifts_with_shift) {
   Particle p;
-  EXPECT_EQ(advance(p.x, p.v, p.density, make_sums(), make_step()), RangeFault::none);
+  EXPECT_EQ(advance(p.x, p.v, make_sums(), make_step()), RangeFault::none);
   EXPECT_EQ(p.v, (Vec<2, double>{{0.5, -0x1p-10}}));
   EXPECT_EQ(p.x, (Vec<2, double>{{1000.0 + 0x1p19 + 3.0, 5.0 - 0x1p11 - 4.0}}));
-  EXPECT_EQ(p.density, 9.0);
+}
+
+TEST(PseudoParticle, shifts_by_the_share_that_its_vorticity_allows) {
+  const auto shifted = [](std::int64_t vorticity) {
+    Particle p;
+    NeighbourSums<2> sums = make_sums();
+    sums.shift = {{1000, -4000}};
+    sums.vorticity[0] = vorticity;
+    EXPECT_EQ(advance(p.x, p.v, sums, make_step()), RangeFault::none);
+    return p.x - Vec<2, double>{{1000.0 + 0x1p19, 5.0 - 0x1p11}};
+  };
+  EXPECT_EQ(shifted(0), (Vec<2, double>{}));                                 // at rest there is none
+  EXPECT_EQ(shifted(1 << 19), (Vec<2, double>{{250.0, -1000.0}}));           // (1/2)^2
+  EXPECT_EQ(shifted(-(1 << 19)), (Vec<2, double>{{250.0, -1000.0}}));        // whichever way the fluid turns
+  EXPECT_EQ(shifted(1 << 20), (Vec<2, double>{{1000.0, -4000.0}}));          // all of it
+  EXPECT_EQ(shifted(5 << 20), (Vec<2, double>{{1000.0, -4000.0}}));          // and never more
+  EXPECT_EQ(shifted((1 << 20) / 100), (Vec<2, double>{{0.0, 0.0}}));         // 1e-4 of it, rounded to quanta
+  EXPECT_EQ(shifted((1 << 20) * 3 / 100), (Vec<2, double>{{1.0, -4.0}}));    // 0.9 and 3.6 quanta
+}
+
+TEST(ShiftShare, by_hand) {
+  ParticleStep<2> plane{};
+  plane.vorticity = 0.25;
+  EXPECT_EQ(shift_share<2>(AngularVec<2, double>{{2.0}}, plane), 0.25);
+  EXPECT_EQ(shift_share<2>(AngularVec<2, double>{{-3.0}}, plane), 0.5625);
+  EXPECT_EQ(shift_share<2>(AngularVec<2, double>{{4.0}}, plane), 1.0);
+  EXPECT_EQ(shift_share<2>(AngularVec<2, double>{{400.0}}, plane), 1.0);
+  EXPECT_EQ(shift_share<2>(AngularVec<2, double>{{0.0}}, plane), 0.0);
+  ParticleStep<3> space{};
+  space.vorticity = 0.25;
+  EXPECT_EQ(shift_share<3>(AngularVec<3, double>{{1.0, -2.0, 2.0}}, space), 0.5625);  // 9 / 16
+  EXPECT_EQ(shift_share<3>(AngularVec<3, double>{{4.0, 1.0, 0.0}}, space), 1.0);
 }
 
 TEST(PseudoParticle, a_fault_is_named_and_changes_nothing) {
-  const auto fault_of = [](const NeighbourSums<2>& sums) {
+  const auto fault_of = [](const NeighbourSums<2>& sums, const Vec<2, double>& v = Particle{}.v) {
     Particle p;
-    const RangeFault fault = advance(p.x, p.v, p.density, sums, make_step());
+    p.v = v;
+    ParticleStep<2> step = make_step();
+    if (v != Particle{}.v) step.drift = {{1.0, 1.0}};
+    const RangeFault fault = advance(p.x, p.v, sums, step);
     EXPECT_EQ(p.x, Particle{}.x);
-    EXPECT_EQ(p.v, Particle{}.v);
-    EXPECT_EQ(p.density, 10.0);
+    EXPECT_EQ(p.v, v);
     return fault;
   };
   NeighbourSums<2> sums = make_sums();
@@ -56,18 +86,14 @@ TEST(PseudoParticle, a_fault_is_named_and_changes_nothing) {
   sums = make_sums();
   sums.shift[0] = (std::int64_t{1} << 21) - (1 << 19) + 1;  // one quantum above the largest drift
   EXPECT_EQ(fault_of(sums), RangeFault::displacement);
-  sums = make_sums();
-  sums.density = std::int64_t{11} << 44;
-  EXPECT_EQ(fault_of(sums), RangeFault::density);
-  sums.density = std::int64_t{5} << 44;
-  EXPECT_EQ(fault_of(sums), RangeFault::density);
+  EXPECT_EQ(fault_of(make_sums(), {{32.0, 0.0}}), RangeFault::velocity);  // 2^53 quanta are 32 c
 }
 
 TEST(PseudoParticle, lanes_move_as_one_by_one) {
   const ParticleStep<2> step = make_step();
   std::mt19937_64 random(7);
-  std::uniform_int_distribution<std::int64_t> impulse(-(std::int64_t{1} << 46), std::int64_t{1} << 46), shift(-9, 9),
-      density(std::int64_t{6} << 44, std::int64_t{10} << 44);
+  std::uniform_int_distribution<std::int64_t> impulse(-(std::int64_t{1} << 46), std::int64_t{1} << 46), shift(-99, 99),
+      vorticity(-(1 << 21), 1 << 21);
   for (int trial = 0; trial < 100; ++trial) {
     Vec<2, Lanes> x, v;
     NeighbourSums<2, IntLanes> sums;
@@ -78,18 +104,21 @@ TEST(PseudoParticle, lanes_move_as_one_by_one) {
         sums.impulse[axis][lane] = impulse(random);
         sums.shift[axis][lane] = shift(random);
       }
-      sums.density[lane] = density(random);
+      sums.vorticity[0][lane] = vorticity(random);
     }
     const int odd = trial % lane_count;  // one of them beyond its range, now and then
-    if (trial % 3 == 1) sums.density[odd] = std::int64_t{11} << 44;
-    if (trial % 7 == 1) sums.shift[1][odd] = std::int64_t{1} << 22;
+    if (trial % 3 == 1) sums.impulse[0][odd] = std::int64_t{1} << 51;
+    if (trial % 7 == 1) {
+      sums.shift[1][odd] = std::int64_t{1} << 23;
+      sums.vorticity[0][odd] = 1 << 20;
+    }
     const auto motion = motion_of(x, v, sums, step);
     for (int lane = 0; lane < lane_count; ++lane) {
-      Particle one{{{x[0][lane], x[1][lane]}}, {{v[0][lane], v[1][lane]}}, 0.0};
+      Particle one{{{x[0][lane], x[1][lane]}}, {{v[0][lane], v[1][lane]}}};
       const NeighbourSums<2> given{{{sums.impulse[0][lane], sums.impulse[1][lane]}},
                                    {{sums.shift[0][lane], sums.shift[1][lane]}},
-                                   sums.density[lane]};
-      const RangeFault fault = advance(one.x, one.v, one.density, given, step);
+                                   {{sums.vorticity[0][lane]}}};
+      const RangeFault fault = advance(one.x, one.v, given, step);
       EXPECT_EQ(motion.beyond.any()[lane], fault != RangeFault::none);
       EXPECT_EQ(fault != RangeFault::none, lane == odd && (trial % 3 == 1 || trial % 7 == 1));
       if (fault != RangeFault::none) continue;
@@ -97,7 +126,6 @@ TEST(PseudoParticle, lanes_move_as_one_by_one) {
         EXPECT_EQ(motion.x[axis][lane], one.x[axis]);
         EXPECT_EQ(motion.v[axis][lane], one.v[axis]);
       }
-      EXPECT_EQ(motion.density[lane], one.density);
     }
   }
 }

@@ -158,7 +158,7 @@ double density_in_surroundings(const Shape<D>& shape, const FrozenParticle<D>& p
         step[1] = (j + 0.5) * cell;
         if constexpr (D == 3) step[2] = (k + 0.5) * cell;
         if (dot(step, step) >= 1.0) continue;
-        const double weight = Kernel::at(length_of(step)).weight;
+        const double weight = Kernel::weight(length_of(step));
         whole += weight;
         outside += weight * (1.0 - coverage(depth_in_union(point.offset + step, shape.balls), cell));
       }

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
+
 #include "base/lanes.hpp"
 
 namespace mappm {
@@ -32,6 +35,20 @@ TEST(StateEquation, volume_terms_by_hand) {
   const auto terms = volume_terms(8.0, 10.0, 1.0, 0.5);  // V^2 = 1/64, p = -3/2
   EXPECT_EQ(terms.v2, 0.015625);
   EXPECT_EQ(terms.pv2, -0.0234375);
+}
+
+TEST(StateEquation, a_density_is_the_sum_over_others_and_what_is_its_own) {
+  EXPECT_EQ(summed_density(std::int64_t{7} << 44, 2.0), 9.0);  // quanta of 2^-44
+  const IntLanes sums([](auto lane) { return std::int64_t{3 + lane} << 43; });
+  const Lanes densities = summed_density(sums, 0.5);
+  for (int lane = 0; lane < lane_count; ++lane) EXPECT_EQ(densities[lane], 0.5 * (3 + lane) + 0.5);
+}
+
+TEST(StateEquation, a_density_is_in_range_from_a_tenth_of_rest_to_ten_times_it) {
+  EXPECT_TRUE(is_in_range(1.0, 10.0) && is_in_range(10.0, 10.0) && is_in_range(100.0, 10.0));
+  EXPECT_FALSE(is_in_range(0.999, 10.0));
+  EXPECT_FALSE(is_in_range(100.1, 10.0));
+  EXPECT_FALSE(is_in_range(std::nan(""), 10.0));
 }
 
 TEST(StateEquation, lanes_have_the_bits_of_double) {

@@ -14,7 +14,9 @@ TEST(SceneReader, FillsDefaults) {
   EXPECT_TRUE(scene.fluid.transport);
   EXPECT_EQ(scene.fluid.no_slip, NoSlip::extrapolated);
   EXPECT_EQ(scene.fluid.kernel, KernelKind::wendland_c2);
-  EXPECT_EQ(scene.fluid.shift_pressure, 1.0);
+  EXPECT_EQ(scene.fluid.shift_rate, 0.5);
+  EXPECT_EQ(scene.fluid.shift_vorticity, 60.0);
+  EXPECT_EQ(scene.fluid.largest_no_slip, 4.0);
   EXPECT_EQ(scene.fluid.precision, Precision::full);
   EXPECT_EQ(scene.run.step_factor, 1.0);
   EXPECT_EQ(scene.output.sample, 100u);
@@ -24,10 +26,29 @@ TEST(SceneReader, ClassicMethodTurnsItsTermsOffAndSingleTermsCanBeChosen) {
   const Scene classic = read(plain_fluid, {"fluid.method=classic"});
   EXPECT_FALSE(classic.fluid.transport);
   EXPECT_EQ(classic.fluid.no_slip, NoSlip::plain);
+  EXPECT_EQ(classic.fluid.largest_no_slip, 1.0);
   const Scene mixed = read(plain_fluid, {"fluid.method=classic", "fluid.no_slip=extrapolated", "fluid.kernel=lucy"});
   EXPECT_FALSE(mixed.fluid.transport);
   EXPECT_EQ(mixed.fluid.no_slip, NoSlip::extrapolated);
   EXPECT_EQ(mixed.fluid.kernel, KernelKind::lucy);
+}
+
+TEST(SceneReader, DefaultsInSpaceAreOthersThanInThePlane) {
+  const Overrides in_space{"box.size=[1.0, 1.0, 1.0]"};
+  EXPECT_EQ(read(plain_fluid, in_space).fluid.largest_no_slip, 8.0);
+  const std::string by_rule = std::string(plain_fluid).replace(plain_fluid.find("sound_speed = 1.0"), 17,
+                                                               "reference_velocity = 0.1");
+  EXPECT_EQ(read(by_rule).fluid.sound_speed.factor, 10.0);
+  EXPECT_EQ(read(by_rule, in_space).fluid.sound_speed.factor, 15.0);
+  EXPECT_EQ(read(by_rule, {"fluid.sound_speed_factor=12"}).fluid.sound_speed.factor, 12.0);
+}
+
+TEST(SceneReader, ReadsTheShiftAndTheBoundOfTheNoSlipFactor) {
+  const FluidScene fluid =
+      read(plain_fluid, {"fluid.shift_rate=0.25", "fluid.shift_vorticity=30", "fluid.largest_no_slip=1"}).fluid;
+  EXPECT_EQ(fluid.shift_rate, 0.25);
+  EXPECT_EQ(fluid.shift_vorticity, 30.0);
+  EXPECT_EQ(fluid.largest_no_slip, 1.0);
 }
 
 TEST(SceneReader, ReadsThePrecision) {
@@ -164,8 +185,17 @@ const BadInput bad_inputs[] = {
      {"fluid.wave.direction", "no such axis"}},
     {"sample", {"output.sample=0"}, {"output.sample = 0", "at least 1"}},
     {"shift_without_transport",
-     {"fluid.transport=false", "fluid.shift_pressure=1"},
-     {"fluid.shift_pressure", "remove it"}},
+     {"fluid.transport=false", "fluid.shift_rate=1"},
+     {"fluid.shift_rate", "remove it"}},
+    {"vorticity_without_transport",
+     {"fluid.method=classic", "fluid.shift_vorticity=1"},
+     {"fluid.shift_vorticity", "remove it"}},
+    {"zero_shift", {"fluid.shift_rate=0"}, {"fluid.shift_rate = 0", "must be positive"}},
+    {"shift_of_old", {"fluid.shift_pressure=1"}, {"fluid.shift_pressure = 1", "unknown key"}},
+    {"bound_below_a_plain_wall", {"fluid.largest_no_slip=0.5"}, {"fluid.largest_no_slip = 0.5", "at least 1"}},
+    {"bound_of_a_plain_wall",
+     {"fluid.no_slip=plain", "fluid.largest_no_slip=4"},
+     {"fluid.largest_no_slip", "remove it"}},
     {"unknown_precision", {"fluid.precision=half"}, {"fluid.precision = 'half'", "\"single\""}},
     {"precision_without_fluid",
      {"fluid={particles=false, density=1, spacing=0.0625, sound_speed=1, precision=\"single\"}"},

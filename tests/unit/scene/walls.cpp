@@ -83,7 +83,7 @@ TEST(SceneWalls, TheFrozenParticlesFillTheWallsOnceAndHaveTheDensityOfTheFluid) 
         d[axis] = nearest_difference(wrap_position(difference), 0.0);
       }
       const Vec<2, double> r = separation(model.pair, d);
-      density += static_cast<double>(pair_density<WendlandC2>(model.pair, r, {}, cut_distance(dot(r, r)))) * density_quantum;
+      density += static_cast<double>(pair_density<WendlandC2>(model.pair, cut_distance(dot(r, r)))) * density_quantum;
       return std::sqrt(dot(r, r));
     };
     for (const FrozenInStep<2>& other : frozen) {

@@ -1,6 +1,10 @@
 // Small scenes for the engines, in rcut, sound speed and PP mass: internal units but for the solids' mass.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "scene/build.hpp"
@@ -176,6 +180,58 @@ friction = 0.3
 fluid = [0.0, 0.0, 0.0005]
 solid = "balance"
 )";
+}
+
+/// The PPs of one box, repeated until they fill a larger one, in `larger`. Places are rounded to quanta of another size.
+template <int D>
+void repeat_fluid(const Built<D>& cell, const Built<D>& larger, const Region<D>& region, State<D>& state) {
+  const FluidParticles<D> one = cell.state(Region<D>::whole_box()).fluid;
+  Vec<D, int> times;
+  int cells = 1;
+  for (int axis = 0; axis < D; ++axis)
+    cells *= times[axis] = static_cast<int>(std::lround(larger.model.box[axis] / cell.model.box[axis]));
+  state.fluid = {};
+  for (int n = 0; n < cells; ++n)
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      Vec<D, double> x;
+      for (int axis = 0, rest = n; axis < D; rest /= times[axis++])
+        x[axis] = std::floor((one.x(axis)[i] + rest % times[axis] * box_quanta) / times[axis]);
+      if (!region.contains(x)) continue;
+      state.fluid.id.push_back(static_cast<std::uint64_t>(n) * one.size() + i);
+      for (int axis = 0; axis < D; ++axis) {
+        state.fluid.x(axis).push_back(x[axis]);
+        state.fluid.v(axis).push_back(one.v(axis)[i]);
+      }
+    }
+}
+
+/// Free turning discs, one in each of so many cells side by side, nearer to each other along x than rcut: in a single
+/// cell the neighbour is the disc's own image. Domains must be 3 wide.
+inline std::string disc_in_each_cell(int along_x, int along_y) {
+  return head(fmt::format("[{}.0, {}]", 4 * along_x, 12.5 * along_y), "0.25", "16.0", "velocity = [0.02, 0.01]") +
+         fmt::format(R"(
+[[body]]
+shape = "disc"
+radius = 1.75
+density = 20.0
+velocity = [0.03, -0.02]
+angular_velocity = 0.05
+array = {{ count = [{}, {}] }}
+)",
+                     along_x, along_y);
+}
+
+/// The same of spheres, near to their neighbours along every axis.
+inline std::string sphere_in_each_cell(int along_each) {
+  return head(fmt::format("[{0}.0, {0}.0, {0}.0]", 3 * along_each), "0.5", "8.0") + fmt::format(R"(
+[[body]]
+shape = "sphere"
+radius = 1.2
+density = 20.0
+velocity = [0.03, -0.02, 0.01]
+array = {{ count = [{0}, {0}, {0}] }}
+)",
+                                                                                             along_each);
 }
 
 }  // namespace mappm::testing
