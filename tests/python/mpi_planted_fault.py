@@ -90,7 +90,7 @@ def test_a_dropped_ghost_is_named_as_the_missing_partner() -> None:
     )
     assert found, lines
     assert int(found[1]) >= 2
-    assert {"vx", "vy", "density"} & set(found[3].split(", "))
+    assert {"vx", "vy"} & set(found[3].split(", "))
     pairs = [line for line in lines if ": pair with " in line]
     assert pairs
     for line in pairs:
