@@ -122,7 +122,7 @@ def trace_differences(one: Path, other: Path) -> tuple[PairDifference, ...]:
         if of_a and of_b:
             fields = {name: (of_a[0][name], of_b[0][name]) for name in of_a[0] if of_a[0][name] != of_b[0][name]}
         found.append(PairDifference(partner, fields, (len(of_a), len(of_b))))
-    return tuple(found)
+    return tuple(sorted(found, key=lambda pair: pair.counts[0] == pair.counts[1]))  # a missing pair changes others by its density
 
 
 def _rerun(scene: Path, out: Path, pair: tuple[Run, Run], name: str, changes: dict, *overrides: str) -> list[Run]:

@@ -26,7 +26,7 @@ from verification.speed_charts import CHARTS
 from verification.stored import FULL, PUBLISHED, finite
 
 SHOWN = "gas_solid_small"
-STEPS = {"quick": 8_000, "full": 60_000}  # of the long run
+STEPS = {"quick": 4_000, "full": 30_000}  # of the long run
 # Made by commands of their own.
 STORED = {"full": FULL.name, "mutation": "mutation.json", "robustness": "robustness.json"} | {name: f"{name}.json" for name in CHARTS}
 

@@ -54,8 +54,8 @@ def _solid(words: np.ndarray, dimension: int) -> dict[str, tuple[int, ...]]:
     at += orientation
     fields["impulse of the fluid"] = _wide(words[at : at + 2 * dimension])
     at += 4 * dimension  # what it was at the last sample is bookkeeping, no state
-    fields["sizes"] = tuple(int(word) for word in words[at:])  # numbers of FPs and of contacts
-    if len(fields["sizes"]) != 2:
+    fields["contacts"] = tuple(int(word) for word in words[at:])  # their number
+    if len(fields["contacts"]) != 1:
         raise ValueError(f"a solid of {len(words)} words is not of this version of the checkpoint format")
     return fields
 
@@ -66,17 +66,15 @@ def read_state(checkpoint: Path) -> State:
         ids = file["fluid/id"][:]
         order = np.argsort(ids)
         names = {"x_" + axis: axis for axis in "xyz"} | {"v_" + axis: "v" + axis for axis in "xyz"}
-        names |= {"density": "density"}
         fluid = {names[name]: file["fluid"][name][:][order] for name in names if name in file["fluid"]}
-        densities, contacts = file["solids/density"][:], file["solids/contacts"][:]
-        solids, density_at, contact_at = {}, 0, 0
+        contacts = file["solids/contacts"][:]
+        solids, contact_at = {}, 0
         for words in file["solids/words"][:]:
             fields = _solid(words, dimension)
-            frozen, touching = fields["sizes"]
-            fields["density of FPs"] = tuple(int(value) for value in densities[density_at : density_at + frozen])
+            (touching,) = fields["contacts"]
             rows = contacts[contact_at : contact_at + touching]
             fields["contacts"] = tuple(sorted(tuple(int(word) for word in row) for row in rows))
-            density_at, contact_at = density_at + frozen, contact_at + touching
+            contact_at += touching
             solids[int(words[0])] = fields
         return State(int(np.ravel(file.attrs["step"])[0]), ids[order], fluid, solids)
 

@@ -59,13 +59,13 @@ def test_the_last_line_and_the_record(tmp_path: Path, ranks: int) -> None:
     for key in ("commit", "compiler", "flags", "instruction_set", "host", "date", "wall_seconds", "particles", "threads"):
         assert record[key], key
     sent = record["exchange"]
-    if ranks == 2:  # two slabs of a periodic box: one neighbour, one message for the halo and one home
-        assert (sent["neighbours"], sent["messages_per_step"]) == (1, 2)
+    if ranks == 2:  # two slabs of a periodic box: one neighbour; a message for the halo, one of densities and one home
+        assert sent["neighbours"] == 1
+        assert 3 <= sent["messages_per_step"] < 4  # in a step whose lists end unforeseen the halo is sent once more
         assert sent["bytes_per_step"] > 1000
     else:
         assert set(sent.values()) == {0}
-    # At steps 1 and 11, after a sample, and where PPs have gone too far for the lists of their pairs: not in each step.
-    assert 2 <= record["orderings"] <= 8 if ranks else record["orderings"] == 0
+    assert (record["orderings"] > 0) == (ranks > 0)
     momentum = record["momentum"]
     for start, end, impulse in zip(momentum["start"], momentum["end"], momentum["impulse"], strict=True):
         assert int(end) - int(start) == int(impulse)
@@ -77,6 +77,11 @@ def test_the_last_line_and_the_record(tmp_path: Path, ranks: int) -> None:
                  "lowest_density_ratio", "momentum_x", "impulse_x", "digest"):
         assert name in series
     assert series["digest"][-1] == record["digest"]
+
+
+def test_lists_of_pairs_last_where_particles_move_little(tmp_path: Path) -> None:
+    called(Options(steps=100, overrides=("run.step_factor=0.1", "output.sample=100")), tmp_path)
+    assert Run(tmp_path).record["orderings"] < 50  # in the first steps, until it is known how far the PPs go, in each
 
 
 def test_quiet_prints_the_last_line_only(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from reference.contact.motion import IMPACT, Motion, centre, fall_time, read_mot
 from reference.contact.scene import contact_scene
 from reference.liggghts import impact, sph
 from reference.liggghts.__main__ import main
+from reference.sph_peer import differences, last_state
 
 SCENE = {
     "box": {"size": [4.0, 4.0, 8.0]},
@@ -216,8 +217,8 @@ def test_states_are_compared_by_the_nodes_they_started_from(tmp_path: Path) -> N
         file.write_text(block + first + block + last)
         return file
 
-    one = sph.last_state(dump([0, 1, 2, 3], 0.0), fluid)
-    same = sph.last_state(dump([3, 1, 0, 2], 0.0), fluid)
-    other = sph.last_state(dump([2, 1, 0, 3], 0.1), fluid)
-    assert sph.differences(one, same, 2) == (0.0, 0.0)
-    assert sph.differences(one, other, 2) == (pytest.approx(0.3), 0.0)
+    one = last_state(dump([0, 1, 2, 3], 0.0), fluid)
+    same = last_state(dump([3, 1, 0, 2], 0.0), fluid)
+    other = last_state(dump([2, 1, 0, 3], 0.1), fluid)
+    assert differences(one, same, 2) == (0.0, 0.0)
+    assert differences(one, other, 2) == (pytest.approx(0.3), 0.0)

@@ -171,9 +171,9 @@ def test_pairs_that_differ_are_named(tmp_path: Path) -> None:
     one.write_text(head + "5,1,PP,7,10,3\n5,1,PP,8,11,3\n5,1,FP,2:31,5,4\n5,1,PP,9,1,1\n")
     other.write_text(head + "5,1,PP,7,10,3\n5,1,PP,8,12,3\n5,1,FP,2:31,5,4\n5,1,FP,2:31,5,4\n")
     assert trace_differences(one, other) == (
-        PairDifference("PP 8", {"impulse_x": ("11", "12")}, (1, 1)),
         PairDifference("FP 2:31", {}, (1, 2)),
         PairDifference("PP 9", {}, (1, 0)),
+        PairDifference("PP 8", {"impulse_x": ("11", "12")}, (1, 1)),
     )
-    assert trace_differences(one, other)[0].line(("a", "b")) == "a | b: pair with PP 8: impulse_x 11 | 12"
+    assert trace_differences(one, other)[-1].line(("a", "b")) == "a | b: pair with PP 8: impulse_x 11 | 12"
     assert trace_differences(one, one) == ()
