@@ -1,4 +1,4 @@
-// The pair pass alone, and the search for its lists: a fluid in disorder, 39 neighbours in the plane and 77 in space,
+// The pair passes alone, that of densities and that of forces together, and the search for its lists: a fluid in disorder, 39 neighbours in the plane and 77 in space,
 // about 10^5 PPs. The number of cells to a reach is varied: it decides how many candidates the search meets, and how
 // the PPs lie in blocks.
 #include "parallel/fluid_pass.hpp"
@@ -27,7 +27,7 @@ void measure(benchmark::State& state) {
   setup.list(pass);
   for (auto _ : state) {
     if constexpr (work == Work::pass)
-      pass.sum(setup.particles, setup.grid);
+      setup.sum(pass);
     else
       setup.list(pass);
     benchmark::DoNotOptimize(pass.sums(0));

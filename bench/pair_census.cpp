@@ -1,4 +1,4 @@
-// What the pair pass meets, and what it costs, on a fluid in disorder: 39 neighbours in the plane, 77 in space.
+// What the pair passes of a step meet, of densities and of forces together, and what they cost, on a fluid in disorder: 39 neighbours in the plane, 77 in space.
 //   bench-pair_census SIDE_2D SIDE_3D ROUNDS
 // SIDE: PPs along each axis. ROUNDS: of the timed parts; with 0 each part is made once, untimed, for a tool that counts
 // instructions. Prints one line a figure; those in time are medians over the rounds, ns a pair within the cutoff.
@@ -21,13 +21,15 @@ namespace mappm {
 using bench::Counted, bench::Operations, bench::SortedFluid;
 namespace {
 
+constexpr int passes = 2;  // of densities and of forces: each works out the distances
+
 /// What the search meets, candidates, and what the lists hold that it makes: blocks, and those with a pair within the
 /// cutoff; pairs within the cutoff.
 struct Census {
   std::uint64_t candidates = 0, blocks = 0, near_blocks = 0, pairs = 0;
 };
 
-/// The parts of a pass, each by itself. None is inlined, so that a tool can tell them apart.
+/// The parts of the passes of a step, each by itself. None is inlined, so that a tool can tell them apart.
 template <int D>
 class Parts {
   using Pass = FluidPass<D, DoublePairs<D>>;
@@ -46,7 +48,8 @@ class Parts {
   [[gnu::noinline]] void search() { setup_.list(pass_); }
   [[gnu::noinline]] void lay_out() { lay_blocks(); }
   [[gnu::noinline]] void distances() {
-    for (const auto& lists : pass_.kept()) lists.for_each_chunk(numbers_, blocks_.data(), squares_, [](auto, auto) {});
+    for (int pass = 0; pass < passes; ++pass)
+      for (const auto& lists : pass_.kept()) lists.for_each_chunk(numbers_, blocks_.data(), squares_, [](auto, auto) {});
   }
   [[gnu::noinline]] void whole_pass() { sum(); }
 
@@ -73,7 +76,7 @@ class Parts {
 
  private:
   void lay_blocks() { blocks_.fill(setup_.fluid.model, numbers_, setup_.particles, setup_.grid); }
-  void sum() { pass_.sum(setup_.particles, setup_.grid); }
+  void sum() { setup_.sum(pass_); }
 
   SortedFluid<D> setup_;
   DoublePairs<D> numbers_;
@@ -95,34 +98,39 @@ Vec<D, Counted> of_lanes(Operations& operations) {
   return numbers;
 }
 
-/// Distances of a block (`KeptLists`).
+/// Distances of a block (`KeptLists`), in all passes.
 template <int D>
 BlockWork work_of_distances(const Model<D>& model) {
   BlockWork work;
-  const Vec<D, Counted> r = separation(model.pair, Vec<D, Counted>{} - of_lanes<D>(work.operations));
-  dot(r, r);
-  work.loads = D;
-  work.stores = 1;
+  for (int pass = 0; pass < passes; ++pass) {
+    const Vec<D, Counted> r = separation(model.pair, Vec<D, Counted>{} - of_lanes<D>(work.operations));
+    dot(r, r);
+    work.loads += D;
+    work.stores += 1;
+  }
   return work;
 }
 
-/// Root and law of a block (`for_each_block`, `pair_block`).
+/// Roots and laws of a block (`for_each_block`, `sum_densities_of_blocks`, `pair_block`).
 template <int D>
 BlockWork work_of_pairs(const Model<D>& model) {
   BlockWork work;
   Operations& operations = work.operations;
   with_pair_law(model, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
-    constexpr int components = (transport ? 2 * D : D) + 1;
+    using Rounding = typename DoublePairs<D>::ListRounding;
+    constexpr int components = transport ? 2 * D + angular_components<D> : D;
+    pair_density<Kernel, Rounding, D>(model.pair, cut_distance(Counted::of_lanes(0.25, operations)));
     const Counted q = cut_distance(Counted::of_lanes(0.25, operations));
     const Vec<D, Counted> r = separation(model.pair, Vec<D, Counted>{} - of_lanes<D>(operations));
     FluidPair<D, Counted> pair;
     pair.v = Vec<D, Counted>{} - of_lanes<D>(operations);
     pair.v2 = Counted() + Counted::of_lanes(1.0, operations);
     pair.pv2 = Counted() + Counted::of_lanes(1.0, operations);
-    fluid_pair<Kernel, transport, typename DoublePairs<D>::ListRounding>(model.pair, pair, r, q, Counted(1.0));
-    operations.integers += 2 * components;    // to the partner and to the centre
-    work.loads = 2 * D + 2 + components + 2;  // places, velocities, volume terms, sums; the square and its root
-    work.stores = components + 1;             // sums; the root
+    fluid_pair<Kernel, transport, Rounding>(model.pair, pair, r, q, Counted(1.0));
+    operations.integers += 2 * (1 + components);  // to the partner and to the centre
+    // Of densities: the sum; the square and its root. Of forces: places, velocities, volume terms, sums; the same.
+    work.loads = 1 + 2 + 2 * D + 2 + components + 2;
+    work.stores = 1 + 1 + components + 1;  // sums; the roots
   });
   return work;
 }
@@ -143,12 +151,14 @@ class Report {
     ratio("candidates_inside", pairs / static_cast<double>(census.candidates));
     ratio("blocks_within_cutoff", static_cast<double>(census.near_blocks) / blocks);
     ratio("lanes_used", pairs / blocks / lane_count);
-    constexpr double block = sizeof(PairBlock<D, DoublePairs<D>>) / lane_count, state = 8.0 * (2 * D + 1);
+    constexpr double block = sizeof(PairBlock<D, DoublePairs<D>>) / lane_count, state = 8.0 * 2 * D;
+    const double lists = 4.0 * blocks / owned + 8.0;
     figure("bytes_per_particle_block", block);
-    figure("bytes_per_particle_lists", 4.0 * blocks / owned + 8.0);
-    // State read and block written, block read and written, lists read; more where a block leaves the cache between two
-    // rows.
-    figure("bytes_per_particle_memory", state + 3.0 * block + 4.0 * blocks / owned + 8.0);
+    figure("bytes_per_particle_lists", lists);
+    // State read and block written; for the densities places and sums read and sums written, lists read; densities and
+    // volumes written; for the forces block read and written, lists read. More where a block leaves the cache between
+    // two rows.
+    figure("bytes_per_particle_memory", state + 3.0 * block + 8.0 * (D + 2) + 8.0 * 3 + passes * lists);
     print_work("distances", work_of_distances(parts_.setup().fluid.model));
     print_work("pairs", work_of_pairs(parts_.setup().fluid.model));
     if (rounds > 0)

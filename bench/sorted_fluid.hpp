@@ -47,9 +47,29 @@ struct SortedFluid {
     pass.list(particles, grid, widened(fluid.model, region, 0.5 * skin), reach, all, false);
   }
 
+  /// Both passes, of densities and of forces, as if all PPs were owned.
+  template <class Pass>
+  void sum(Pass& pass) {
+    sum_densities(pass);
+    sum_forces(pass);
+  }
+  template <class Pass>
+  void sum_densities(Pass& pass) {
+    density.resize(particles.size());
+    pass.sum_inner_densities(grid);
+    pass.sum_rest_densities(particles, grid);
+    pass.close_densities({}, density);
+  }
+  template <class Pass>
+  void sum_forces(Pass& pass) {
+    pass.sum_inner(grid);
+    pass.sum_rest(grid);
+  }
+
  private:
   static constexpr double reach = 1.0 + skin;
   Region<D> region;
+  std::vector<double> density;
 
   /// Pairs within the cutoff: those of which at least one PP is owned, and the others.
   void count() {

@@ -30,8 +30,12 @@ class FloatingPairs : public DoublePairs<D> {
       sums.impulse[axis] = to_fixed(given.impulse[axis]);
       sums.shift[axis] = to_fixed(given.shift[axis]);
     }
-    sums.density = to_fixed(given.density);
+    for (int k = 0; k < angular_components<D>; ++k) sums.vorticity[k] = to_fixed(given.vorticity[k]);
     return sums;
+  }
+  template <class Real>
+  Fixed<Real> density(const Real& sum) const {
+    return to_fixed(sum);
   }
 };
 

@@ -105,7 +105,8 @@ void expect_digest_after_stays(const Built<D>& built, const Domains<D>& domains,
     engine.step();
   }
   if (ending == 0 && options.rebalance == 0 && built.model.terms.fluid) {
-    EXPECT_LT(engine.orderings(), static_cast<unsigned>(steps) * 2 / 3);
+    // Contacts and the start, when all is set in motion, end stays early: these are most of a short run.
+    EXPECT_LT(engine.orderings(), static_cast<unsigned>(steps < 100 ? steps * 9 / 10 : steps * 2 / 3));
   }
   EXPECT_EQ(total(digest_share(engine.state())), digests.back());
   EXPECT_EQ(engine.range_error(), "");
@@ -260,8 +261,8 @@ TEST(ParallelEngine, tells_where_its_time_went) {
     phases.insert(name);
     EXPECT_GT(seconds, 0.0) << name;
   }
-  EXPECT_EQ(phases, (std::set<std::string>{"exchange", "sort", "lists", "pairs", "frozen_pairs", "solids", "copies",
-                                           "integrate"}));
+  EXPECT_EQ(phases, (std::set<std::string>{"exchange", "sort", "lists", "densities", "pairs", "frozen_pairs", "solids",
+                                           "copies", "integrate"}));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 #include <tuple>
@@ -33,15 +34,12 @@ void stir(const Model<D>& model, State<D>& state) {
       state.fluid.x(axis)[i] = wrap_position(state.fluid.x(axis)[i] + moved);
       state.fluid.v(axis)[i] = share(state.fluid.id[i], axis + 7);
     }
-    state.fluid.density()[i] = 10.0 + share(state.fluid.id[i], 20);
   }
   for (Solid<D>& solid : state.solids) {
     for (int axis = 0; axis < D; ++axis) {
       const double moved = std::nearbyint(0.25 * share(~solid.id, axis) / model.pair.length[axis]);
       solid.x[axis] = wrap_position(solid.x[axis] + moved);
     }
-    for (std::size_t k = 0; k < solid.density.size(); ++k)
-      solid.density[k] = share(~solid.id, 100 + static_cast<int>(k));
     solid.contacts = {{solid.id + 1, 2, 3, {{0.25}}}};
     solid.fluid_impulse[0] = static_cast<Int128>(solid.id) << 70;
     solid.sampled_impulse[1] = -5;
@@ -135,29 +133,21 @@ Region<D> nowhere() {
   return {};
 }
 
-/// A copy must bring all that its owner knows but contacts and the densities of FPs that are out of reach.
+/// A copy must bring all that its owner knows but contacts.
 template <int D>
-void expect_true_copy(const Model<D>& model, const Solid<D>& copy, const Solid<D>& original, const Region<D>& reach) {
+void expect_true_copy(const Solid<D>& copy, const Solid<D>& original) {
   EXPECT_EQ(copy.shape, original.shape);
   EXPECT_EQ(copy.group, original.group);
   EXPECT_EQ(copy.motion, original.motion);
   EXPECT_TRUE(copy.momentum == original.momentum);
   EXPECT_TRUE(copy.angular_momentum == original.angular_momentum);
   EXPECT_EQ(copy.orientation.component, original.orientation.component);
-  const SolidInStep<D> body = solid_in_step(model, copy);
-  for (std::size_t k = 0; k < original.density.size(); ++k) {
-    const bool needed = reach.contains(place(copy, body.velocity, body.shape->frozen[k], model.pair.length).x);
-    EXPECT_TRUE(!needed || copy.density[k] == original.density[k]);
-  }
 }
 
-/// Every FP of every solid lies in the region of exactly one process; each reports one density and one impulse.
+/// Every FP of every solid lies in the region of exactly one process; each adds one to an impulse.
 template <int D>
 void expect_reports_to_come_home(const Model<D>& model, Halo<D>& halo, const State<D>& state,
                                  const std::vector<Solid<D>>& copies) {
-  const auto value = [](std::uint64_t id, std::uint32_t k) { return 1000.0 * static_cast<double>(id) + k; };
-  std::map<std::uint64_t, std::vector<int>> reported;
-  for (const Solid<D>& solid : state.solids) reported[solid.id].assign(solid.density.size(), 0);
   const auto inside = [&](const Solid<D>& solid) {
     std::vector<FrozenInStep<D>> frozen;
     place_frozen(model, solid_in_step(model, solid), 0, halo.region(), frozen);
@@ -167,28 +157,70 @@ void expect_reports_to_come_home(const Model<D>& model, Halo<D>& halo, const Sta
   for (std::size_t c = 0; c < copies.size(); ++c) {
     reports[c].solid = copies[c].id;
     for (const FrozenInStep<D>& fp : inside(copies[c])) {
-      reports[c].index.push_back(fp.index);
-      reports[c].density.push_back(value(copies[c].id, fp.index));
+      reports[c].any = true;
       reports[c].fluid.linear[0] += 1;
+      reports[c].fluid.linear[1] += Int128{fp.index} << 70;
       reports[c].fluid.angular[0] -= Int128{1} << 80;
     }
   }
+  std::map<std::uint64_t, SolidImpulse<D>> reported;
   for (const Solid<D>& solid : state.solids)
-    for (const FrozenInStep<D>& fp : inside(solid)) ++reported[solid.id][fp.index];
-  for (const HomeReport<D>& report : halo.send_home(copies, std::move(reports))) {
-    const auto home = reported.find(report.solid);
-    EXPECT_TRUE(home != reported.end()) << "a report for solid " << report.solid << " came to another process";
-    if (home == reported.end()) continue;
-    EXPECT_TRUE(report.fluid.linear[0] == static_cast<Int128>(report.index.size()));
-    EXPECT_TRUE(report.fluid.angular[0] == -(static_cast<Int128>(report.index.size()) << 80));
-    for (std::size_t n = 0; n < report.index.size(); ++n) {
-      EXPECT_EQ(report.density[n], value(report.solid, report.index[n]));
-      ++home->second[report.index[n]];
+    for (const FrozenInStep<D>& fp : inside(solid)) {
+      reported[solid.id].linear[0] += 1;
+      reported[solid.id].linear[1] += Int128{fp.index} << 70;
+      reported[solid.id].angular[0] -= Int128{1} << 80;
     }
+  for (const HomeReport<D>& report : halo.send_home(copies, std::move(reports))) {
+    EXPECT_TRUE(std::ranges::any_of(state.solids, [&](const Solid<D>& solid) { return solid.id == report.solid; }))
+        << "a report for solid " << report.solid << " came to another process";
+    EXPECT_TRUE(report.fluid.linear[0] > 0) << "of no FP none is sent";
+    reported[report.solid].linear += report.fluid.linear;
+    reported[report.solid].angular += report.fluid.angular;
   }
-  for (const auto& [id, counts] : reported)
-    EXPECT_EQ(std::count(counts.begin(), counts.end(), 1), static_cast<std::ptrdiff_t>(counts.size()))
-        << "solid " << id;
+  for (const Solid<D>& solid : state.solids) {
+    const auto count = static_cast<Int128>(model.shapes[solid.shape].frozen.size());
+    EXPECT_TRUE(reported[solid.id].linear[0] == count) << "solid " << solid.id;
+    EXPECT_TRUE(reported[solid.id].linear[1] == (count * (count - 1) / 2) << 70) << "solid " << solid.id;
+    EXPECT_TRUE(reported[solid.id].angular[0] == -(count << 80)) << "solid " << solid.id;
+  }
+}
+
+/// A density that every process can work out for itself.
+double density_of(std::uint64_t id) { return 10.0 + 1e-3 * static_cast<double>(id); }
+double density_of(std::uint64_t solid, std::uint32_t index) {
+  return 20.0 + static_cast<double>(solid) + 1e-3 * static_cast<double>(index);
+}
+
+/// Each process knows the densities of what lies in its region, and learns those of all PPs and FPs within rcut.
+template <int D>
+void expect_densities_of_ghosts(const Model<D>& model, Halo<D>& halo, const State<D>& state, Residents<D>& residents,
+                                const std::vector<Solid<D>>& copies) {
+  residents.settle(state.fluid);
+  std::vector<double> density;
+  for (std::size_t i = 0; i < state.fluid.size(); ++i)
+    density.push_back(halo.region().contains(state.fluid.position(i)) ? density_of(state.fluid.id[i]) : -1.0);
+  PlacedSolids<D> solids;
+  solids.clear();
+  for (const auto& list : {std::cref(state.solids), std::cref(copies)})
+    for (const Solid<D>& solid : list.get()) {
+      const auto index = static_cast<std::uint32_t>(solids.bodies.size());
+      place_frozen(model, solids.bodies.emplace_back(solid_in_step(model, solid)), index, halo.reach(), solids.frozen);
+      solids.first.push_back(solids.frozen.size());
+    }
+  for (FrozenInStep<D>& fp : solids.frozen)
+    if (halo.region().contains(fp.place.x))
+      set_density(model, fp, density_of(solids.bodies[fp.solid].solid->id, fp.index));
+  halo.begin_densities(state.fluid, residents, density, solids);
+  halo.end_densities(state.fluid, residents, density, solids);
+  for (std::size_t i = 0; i < state.fluid.size(); ++i)
+    if (halo.reach().contains(state.fluid.position(i))) {
+      EXPECT_EQ(density[i], density_of(state.fluid.id[i])) << "particle " << state.fluid.id[i];
+    }
+  for (const FrozenInStep<D>& fp : solids.frozen) {
+    const std::uint64_t solid = solids.bodies[fp.solid].solid->id;
+    EXPECT_EQ(fp.density, density_of(solid, fp.index)) << "solid " << solid << ", FP " << fp.index;
+    EXPECT_EQ(fp.volume.v2, 1.0 / fp.density * (1.0 / fp.density));
+  }
 }
 
 template <int D>
@@ -224,7 +256,8 @@ void expect_brute_force_halo(const Built<D>& built, const Domains<D>& domains) {
                              [](const Solid<D>& a, const Solid<D>& b) { return a.id < b.id; }));
   std::map<std::uint64_t, const Solid<D>*> original;
   for (const Solid<D>& solid : global.solids) original[solid.id] = &solid;
-  for (const Solid<D>& copy : copies) expect_true_copy(model, copy, *original.at(copy.id), reach);
+  for (const Solid<D>& copy : copies) expect_true_copy(copy, *original.at(copy.id));
+  expect_densities_of_ghosts(model, halo, state, residents, copies);
   expect_reports_to_come_home(model, halo, state, copies);
 
   // Without the ghosts the processes hold the global state: every particle and solid is owned exactly once.
@@ -233,7 +266,7 @@ void expect_brute_force_halo(const Built<D>& built, const Domains<D>& domains) {
   EXPECT_EQ(testing::total(owned.solids.size()), global.solids.size());
   EXPECT_EQ(testing::total(digest_share(owned)), digest_share(global));
   EXPECT_EQ(halo.traffic().bytes > 0, world().size() > 1);
-  EXPECT_EQ(halo.traffic().messages, 2u * static_cast<unsigned>(halo.traffic().neighbours));  // there and home
+  EXPECT_EQ(halo.traffic().messages, 3u * static_cast<unsigned>(halo.traffic().neighbours));  // there, densities, home
 }
 
 template <int D>

@@ -40,7 +40,7 @@ void expect_kept_state(const std::string& scene) {
     SCOPED_TRACE(grid);
     const Domains<D> even = make_domains<D>(built.model, world().size(), grid);
     for (const Domains<D>& domains : {even, testing::uneven(built.model, even)}) {
-      redistribute(built.model, domains, world(), state);
+      redistribute(domains, world(), state);
       expect_own_particles(domains.region(rank), state);
       EXPECT_EQ(total(digest_share(state)), digest);
       EXPECT_EQ(total(state.fluid.size()), particles);
@@ -60,7 +60,7 @@ TEST(Redistribute, one_process_may_hold_everything_at_first) {
   if (world().is_first()) state = built.state();
   const std::uint64_t digest = total(digest_share(state));
   const Domains<2> domains = make_domains<2>(built.model, world().size(), "");
-  redistribute(built.model, domains, world(), state);
+  redistribute(domains, world(), state);
   expect_own_particles(domains.region(world().rank()), state);
   EXPECT_EQ(total(digest_share(state)), digest);
   EXPECT_GT(state.fluid.size(), 0u);
@@ -80,7 +80,7 @@ TEST(DomainsByLoad, share_an_uneven_fluid_evenly) {
     const std::uint64_t particles = total(state.fluid.size());
     EXPECT_EQ(particles, 40u * 40u);
     const Domains<2> balanced = domains_by_load(built.model, even, world(), state);
-    redistribute(built.model, balanced, world(), state);
+    redistribute(balanced, world(), state);
     // Borders fall between the columns and rows of the lattice: one column or row of 40 more or less on each side.
     const double fair = static_cast<double>(particles) / world().size();
     EXPECT_NEAR(static_cast<double>(state.fluid.size()), fair, 2.0 * 40.0);

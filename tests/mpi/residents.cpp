@@ -37,7 +37,7 @@ class ResidentsTest : public ::testing::Test {
       for (auto& values : fluid_.field) values.push_back(0.0);
       fluid_.x(0).back() = quanta(0, pp.x);
       fluid_.x(1).back() = quanta(1, pp.y);
-      fluid_.density().back() = 1.0;
+      fluid_.v(0).back() = 1.0;
     }
     residents_.settle(fluid_);
   }
@@ -56,6 +56,19 @@ class ResidentsTest : public ::testing::Test {
     const bool stay = residents_.lasts() && residents_.refresh(fluid_, readers);
     EXPECT_TRUE(!stay || readers[0].at_end());
     return stay;
+  }
+  struct Density {
+    std::uint64_t id;
+    double value;
+  };
+  void take(const std::vector<Density>& given, std::vector<double>& density) {
+    Buffer buffer;
+    put(buffer, static_cast<std::uint64_t>(given.size()));
+    for (const Density& one : given) put(buffer, one.id);
+    for (const Density& one : given) put(buffer, one.value);
+    BufferReader reader(buffer);
+    residents_.take_densities(fluid_, 0, reader, density);
+    EXPECT_TRUE(reader.at_end());
   }
   std::vector<std::uint64_t> sent() const {
     std::vector<std::uint32_t> chosen;
@@ -82,8 +95,8 @@ TEST_F(ResidentsTest, ghosts_are_brought_up_to_date_in_their_places) {
   ASSERT_TRUE(receive({{4, 3.02}, {3, 3.91}}));
   EXPECT_EQ(fluid_.x(0)[2], quanta(0, 3.91));
   EXPECT_EQ(fluid_.x(0)[3], quanta(0, 3.02));
-  EXPECT_EQ(fluid_.density()[3], 7.0);
-  EXPECT_EQ(fluid_.density()[1], 1.0);
+  EXPECT_EQ(fluid_.v(0)[3], 7.0);
+  EXPECT_EQ(fluid_.v(0)[1], 1.0);
   // Again, in another order and one fewer: 4 has gone far enough away.
   fluid_.x(0)[3] = quanta(0, 2.94);
   ASSERT_TRUE(receive({{3, 3.92}}));
@@ -96,6 +109,37 @@ TEST_F(ResidentsTest, images_of_one_particle_are_told_apart_by_their_places) {
   ASSERT_TRUE(receive({{3, 3.92, -0.49}, {3, 3.92, 5.01}}));
   EXPECT_EQ(fluid_.x(1)[1], quanta(1, 5.01));
   EXPECT_EQ(fluid_.x(1)[2], quanta(1, -0.49));
+}
+
+TEST_F(ResidentsTest, densities_of_ghosts_are_taken_by_their_ids) {
+  settle({{1, 6.0}, {2, 4.5}, {3, 3.9}, {4, 3.0}});
+  std::vector<double> density{10.0, 11.0, 0.0, 0.0};
+  take({{4, 14.0}, {3, 13.0}}, density);
+  EXPECT_EQ(density, (std::vector<double>{10.0, 11.0, 13.0, 14.0}));
+  take({{4, 24.0}, {3, 23.0}}, density);  // in the same order
+  EXPECT_EQ(density, (std::vector<double>{10.0, 11.0, 23.0, 24.0}));
+  take({{3, 33.0}, {9, 39.0}}, density);  // in another, one fewer, and one that is not here
+  EXPECT_EQ(density, (std::vector<double>{10.0, 11.0, 33.0, 24.0}));
+}
+
+TEST_F(ResidentsTest, all_images_of_one_particle_have_its_density) {
+  settle({{1, 6.0}, {3, 3.9, 5.0}, {3, 3.9, -0.5}});
+  std::vector<double> density{10.0, 0.0, 0.0};
+  take({{3, 13.0}}, density);
+  EXPECT_EQ(density, (std::vector<double>{10.0, 13.0, 13.0}));
+}
+
+TEST_F(ResidentsTest, others_are_those_that_lie_outside_the_region_now) {
+  settle({{1, 6.0}, {2, 4.01}, {3, 3.99}, {4, 3.5}});
+  const auto others = [&] {
+    std::vector<std::uint32_t> found = residents_.others();
+    std::ranges::sort(found);
+    return found;
+  };
+  EXPECT_EQ(others(), (std::vector<std::uint32_t>{2, 3}));
+  move(1, 3.98);
+  ASSERT_TRUE(receive({{3, 4.01}, {4, 3.5}}));
+  EXPECT_EQ(others(), (std::vector<std::uint32_t>{1, 3}));
 }
 
 TEST_F(ResidentsTest, what_is_sent_follows_from_places_and_owners) {
@@ -181,6 +225,14 @@ TEST_F(OwnImages, move_with_their_PPs) {
   EXPECT_EQ(fluid_.x(1)[3], fluid_.x(1)[0] + box_quanta);
   EXPECT_EQ(fluid_.v(1)[3], 3.0);
   EXPECT_EQ(fluid_.x(1)[4], fluid_.x(1)[1] + box_quanta);
+}
+
+TEST_F(OwnImages, have_the_densities_of_their_PPs) {
+  settle_with_images();
+  ASSERT_TRUE(stays());
+  std::vector<double> density{11.0, 12.0, 13.0, 0.0, 0.0};
+  residents_.copy_densities(fluid_, density);
+  EXPECT_EQ(density, (std::vector<double>{11.0, 12.0, 13.0, 11.0, 12.0}));
 }
 
 TEST_F(OwnImages, are_owned_where_their_PP_has_crossed_the_border) {
