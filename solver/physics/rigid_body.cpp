@@ -89,11 +89,6 @@ PlacedFrozen<D> place(const Solid<D>& solid, const RigidVelocity<D>& velocity, c
 }
 
 template <int D>
-Vec<D, double> place_of(const Solid<D>& solid, const FrozenParticle<D>& frozen, const Vec<D, double>& length) {
-  return displaced(solid.x, rotate(solid.orientation, frozen.offset), length);
-}
-
-template <int D>
 AngularVec<D, Int128> torque_impulse(const Vec<D, double>& lever, const Vec<D, double>& impulse) {
   const AngularVec<D, double> torque = cross<D, double>(lever, impulse);
   AngularVec<D, Int128> rounded;
@@ -141,8 +136,6 @@ template PlacedFrozen<2> place(const Solid<2>&, const RigidVelocity<2>&, const F
                                const Vec<2, double>&);
 template PlacedFrozen<3> place(const Solid<3>&, const RigidVelocity<3>&, const FrozenParticle<3>&,
                                const Vec<3, double>&);
-template Vec<2, double> place_of(const Solid<2>&, const FrozenParticle<2>&, const Vec<2, double>&);
-template Vec<3, double> place_of(const Solid<3>&, const FrozenParticle<3>&, const Vec<3, double>&);
 template AngularVec<2, Int128> torque_impulse<2>(const Vec<2, double>&, const Vec<2, double>&);
 template AngularVec<3, Int128> torque_impulse<3>(const Vec<3, double>&, const Vec<3, double>&);
 template AngularVec<2, Int128> stress_couple(double, const Shape<2>&, const AngularVec<2, double>&, double);

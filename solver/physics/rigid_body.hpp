@@ -100,10 +100,6 @@ template <int D>
 PlacedFrozen<D> place(const Solid<D>& solid, const RigidVelocity<D>& velocity, const FrozenParticle<D>& frozen,
                       const Vec<D, double>& length);
 
-/// Its position alone.
-template <int D>
-Vec<D, double> place_of(const Solid<D>& solid, const FrozenParticle<D>& frozen, const Vec<D, double>& length);
-
 /// Impulses that act on a solid in one step: exact integers.
 template <int D>
 struct SolidImpulse {
