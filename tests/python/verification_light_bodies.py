@@ -1,7 +1,7 @@
-"""Free bodies lighter than the fluid that they drag along. Oracle: what rests is not thrown to and fro, farther in each step.
+"""Free bodies lighter than the fluid that they drag along. Oracle: what rests is not thrown to and fro.
 
-A disc or a sphere of radius 4 dx in a fluid with disorder, which gives it a push. Beyond the last stable step its energy
-grows by some ten per cent or more a step.
+A disc or a sphere of radius 4 dx in a fluid with disorder, which gives it a push. Beyond the last stable step it is
+thrown farther in each step.
 """
 
 import re
@@ -68,8 +68,8 @@ def test_a_light_disc_is_calm_where_viscosity_is_low(tmp_path: Path, density: fl
     assert_calm(tmp_path, 2, density, 0.02, True)
 
 
-# A disc turns unstable at .43 of `last` (a sphere at .46): its inertia is half that of its mass at the rim, and friction
-# there is the same. `light_solid_limit` knows of motion along a line alone.
+# Turning is unstable from .43 of `last` on (a sphere: .46): the inertia of a disc is half that of its mass at the rim, and
+# friction there is the same. `light_solid_limit` knows of motion along a line alone.
 @pytest.mark.xfail(strict=True, raises=SolverError, reason="the limit of light solids leaves out rotation")
 @pytest.mark.parametrize(("dimension", "density"), [(2, 0.1), (2, 0.01), (2, 0.001), (3, 0.01)])
 def test_a_light_body_is_calm_where_viscosity_is_high(tmp_path: Path, dimension: int, density: float) -> None:
@@ -78,7 +78,7 @@ def test_a_light_body_is_calm_where_viscosity_is_high(tmp_path: Path, dimension:
 
 @pytest.mark.parametrize("density", DENSITIES)
 def test_a_step_beyond_the_last_is_refused(tmp_path: Path, density: float) -> None:
-    """For the viscous part of the limit, the lighter the shorter: 2 M / (A a mu / h) or what waves allow."""
+    """Without rotation: 2 M / (A a mu / h), or what waves allow."""
     with pytest.raises(SolverError, match="the last that") as caught:
         run(scene(tmp_path, 2, density, 0.5, False), tmp_path / "out", Options(overrides=("run.step=50.0",)))
     last = float(re.search(r"longer than (\S+), the last", str(caught.value))[1])
