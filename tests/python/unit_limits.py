@@ -1,6 +1,7 @@
 """Steps beyond the last stable one are refused. Oracle: the first wave that grows, in any direction.
 
-Theory: lattice_theory.py. The solver looks at the symmetric directions of two lattices alone, and cuts what it finds to two decimals.
+Theory: lattice_theory.py. The solver looks at the symmetric directions of two lattices alone, and cuts what it finds
+to two decimals.
 """
 
 import re
