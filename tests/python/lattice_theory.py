@@ -1,8 +1,8 @@
 """Linear theory of one step on a lattice of PPs, from the formulas of the method alone.
 
-A wave displaces the PP at x by d exp(i k.x) and gives it the velocity v exp(i k.x). To first order in both, a partner at
-x - r has exp(-i k.r) times as much, and the laws of the solver become sums over the partners of one PP. Lengths in rcut,
-velocities in c; h = 1/2; a PP has the volume V of a cell of the lattice.
+A wave displaces the PP at x by d exp(i k.x) and gives it the velocity v exp(i k.x). To first order in both, a partner
+at x - r has exp(-i k.r) times as much, and the laws of the solver become sums over the partners of one PP. Lengths in
+rcut, velocities in c; h = 1/2; a PP has the volume V of a cell of the lattice.
 """
 
 from dataclasses import dataclass, replace
@@ -75,11 +75,13 @@ class Lattice:
         return nodes[(q > 1e-9) & (q < 1)]
 
     def sums(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of wave vectors k (n, D): accelerations by a displacement, by pressure and by unevenness, (n, D, D); friction (n)."""
+        """Of wave vectors k (n, D): accelerations by a displacement, through pressure and unevenness, (n, D, D);
+        friction (n)."""
         _, slope, gradient, gradient_slope = KERNELS[self.kernel]
         r = self.partners
         q = np.linalg.norm(r, axis=1)
-        minus_w, g, g_slope = self.scales[0] * slope(q), self.scales[1] * gradient(q), self.scales[1] * gradient_slope(q)
+        of_weight, of_gradient = self.scales
+        minus_w, g, g_slope = of_weight * slope(q), of_gradient * gradient(q), of_gradient * gradient_slope(q)
         partner = np.exp(-1j * k @ r.T)
         density = -((1 - partner) * minus_w) @ r  # relative change: W changes by W'/r r.(d_i - d_j)
         push = ((1 + partner) * g) @ r  # sum V G r (rho_i + rho_j) / rho_0

@@ -1,6 +1,7 @@
-"""Steps beyond the last stable one are refused. Oracle: the first wave that grows, in lattice_theory.py, over all directions.
+"""Steps beyond the last stable one are refused. Oracle: the first wave that grows, in any direction.
 
-The solver looks at the symmetric directions of two lattices alone, and cuts what it finds to two decimals.
+Theory: lattice_theory.py. The solver looks at the symmetric directions of two lattices alone, and cuts what it finds
+to two decimals.
 """
 
 import re
@@ -64,9 +65,9 @@ def test_the_shift_has_its_share_in_the_last_step(tmp_path: Path, kernel: str, r
 
 
 def friction_at_a_wall(kernel: str, largest: float) -> float:
-    """Of a PP at 0.1 dx from a plane wall over that in the fluid, where the shortest waves set two PPs against each other: a
-    pair of PPs counts twice, one with an FP once. FPs lie at depths of k + 1/2 spacings; their beta is 1 + depth / distance,
-    the distance being a quarter of a spacing at least."""
+    """Of a PP at 0.1 dx from a plane wall over that in the fluid, where the shortest waves set two PPs against each
+    other: a pair of PPs counts twice, one with an FP once. FPs lie at depths of k + 1/2 spacings; their beta is
+    1 + depth / distance, the distance being a quarter of a spacing at least."""
     gradient, most = KERNELS[kernel][2], int(REACH) + 1
 
     def row(height: float) -> float:

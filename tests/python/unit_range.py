@@ -1,4 +1,4 @@
-"""A value that leaves its range ends a run with exit code 3, and the message says which. Oracle: what such a flow must do."""
+"""A value that leaves its range ends a run with exit code 3, and the message says which."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from verification.solver import Options, run
 
 @pytest.mark.parametrize("ranks", [0, 1])
 def test_a_fluid_that_collapses_is_named(tmp_path: Path, ranks: int) -> None:
-    """A force towards one plane that sound could not hold: at rest ln(rho / rho_0) would be about 2 A / (k c^2) = 30 there."""
+    """A force towards one plane: at rest ln(rho / rho_0) would be about 2 A / (k c^2) = 30 there."""
     scene = tmp_path / "scene.toml"
     scene.write_text("""
         name = "torn"

@@ -3,8 +3,8 @@
 A wave of 1e-7 c stays linear, and still has eight digits in the integers of the state. Displacement and velocity of its
 PPs after each step, projected on the wave, give the map of a step, two by two numbers, which are compared with those of
 theory, and so are the factors by which the wave grows. The limit of the step is where the first of them passes -1. The
-solver refuses steps beyond the limit of any wave; a wave that it does not know of is that of a background pressure, which
-stiffens the lattice: with it a run just beyond the limit can be seen to grow.
+solver refuses steps beyond the limit of any wave; what it does not know of is a background pressure, which stiffens the
+lattice: with it a run just beyond the limit can be seen to grow.
 """
 
 from dataclasses import dataclass
@@ -58,6 +58,7 @@ class Wave:
     def scene(self, law: Law) -> str:
         """dx = 1, c = 1, rho_0 = 1. The shift acts on what turns alone: on sound it does with a force across it."""
         h, direction = 0.5 * REACH, "xyz"[self.axis]
+        turning = 'wave = { amplitude = 1e-9, direction = "y", gradient = "x", mode = 1 }'
         shift = f"shift_rate = {law.shift}\nshift_vorticity = {LARGE_SHARE}" if law.shift else "transport = false"
         return f"""
             name = "wave"
@@ -75,7 +76,7 @@ class Wave:
             {shift}
             wave = {{ amplitude = 1e-7, direction = "{direction}", gradient = "x", mode = {self.mode} }}
             {"[force]" if law.shift and self.axis == 0 else ""}
-            {'wave = { amplitude = 1e-9, direction = "y", gradient = "x", mode = 1 }' if law.shift and self.axis == 0 else ""}
+            {turning if law.shift and self.axis == 0 else ""}
             [run]
             step = {law.step * h!r}
             steps = {STEPS}
@@ -98,7 +99,7 @@ class Wave:
         return np.array(rows) / (shape @ shape)
 
     def measured(self, law: Law, folder: Path, ranks: int) -> np.ndarray:
-        """The map of a step, as `theory` gives it, from a run. The first step of a wave that a force makes turn has no shift."""
+        """The map of a step, as `theory` gives it, from a run. Before a force makes a wave turn it has no shift."""
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "scene.toml").write_text(self.scene(law))
         states = self.states(run(folder / "scene.toml", folder / "out", Options(ranks=ranks)))[1 if law.shift else 0 :]
@@ -164,7 +165,8 @@ def test_the_shift_moves_a_wave_as_theory_says(tmp_path: Path, dimension: int, k
 
 @pytest.mark.parametrize("ranks", ENGINES.values())
 def test_the_share_of_the_shift_follows_the_square_of_the_vorticity(tmp_path: Path, ranks: int) -> None:
-    """All pairs of the start, by the formulas: u = kappa c h sum (V_i^2 + V_j^2) / (2 V_0) G r, min(1, (a h omega / c)^2)."""
+    """All pairs of the start, by the formulas: u = kappa c h sum (V_i^2 + V_j^2) / (2 V_0) G r, its share
+    min(1, (a h omega / c)^2)."""
     rate, a, h = 0.5, 150.0, 0.5 * REACH
     scene = tmp_path / "scene.toml"
     scene.write_text(f"""
@@ -200,7 +202,8 @@ def test_the_share_of_the_shift_follows_the_square_of_the_vorticity(tmp_path: Pa
     v = start["velocity"][:, None, :2] - start["velocity"][None, :, :2]
     q = np.linalg.norm(r, axis=2) / REACH
     # G in 1 / dx^2, with V_0 = 1
-    g = np.where((q > 0) & (q < 1), KERNELS["wendland-c2"][2](q), 0.0) * Lattice("square", REACH, "wendland-c2").scales[1]
+    g = np.where((q > 0) & (q < 1), KERNELS["wendland-c2"][2](q), 0.0)
+    g *= Lattice("square", REACH, "wendland-c2").scales[1]
     g *= 0.5 * (start["density"][:, None] ** -2.0 + start["density"][None, :] ** -2.0) / REACH**2
     shift = rate * h * np.einsum("ij,ijk->ik", g, r) * dt
     vorticity = (g * (r[..., 0] * v[..., 1] - r[..., 1] * v[..., 0])).sum(axis=1)

@@ -1,10 +1,11 @@
 """Energy of a fluid without viscosity and shift. Oracle: a step that is symplectic keeps it, over any number of steps.
 
 The sum that is kept is kinetic + alpha internal: pressure forces carry G where the density carries W, and the two are
-normalised apart, so that alpha = G / (-W'/r), 1.0078 in the plane at rcut = 3 dx. The velocities stand half a step before the
-positions. So what is kept is not that sum but (1 + cos(omega dt)) / 2 of its mean, wave by wave: means over many periods are
-compared, and still change by (omega dt)^2 where energy goes from some waves to others. In 144 PPs at the default step they
-wander by a thousandth and more (in 500000 steps from +.002 to -.003), at a quarter of it by a sixteenth of that.
+normalised apart, so that alpha = G / (-W'/r), 1.0078 in the plane at rcut = 3 dx. The velocities stand half a step
+before the positions. So what is kept is not that sum but (1 + cos(omega dt)) / 2 of its mean, wave by wave: means over
+many periods are compared, and still change by (omega dt)^2 where energy goes from some waves to others. In 144 PPs at
+the default step they wander by a thousandth and more (in 500000 steps from +.002 to -.003), at a quarter of it by a
+sixteenth of that.
 """
 
 from pathlib import Path

@@ -12,7 +12,7 @@ import pytest
 from verification.solver import Options, Run, run
 
 CELL = (18.0, 12.0)  # two processes share it along x
-RADIUS = (80 / np.pi) ** 0.5  # of an area of 80 PPs, which fill whole shells of the lattice; 1.9 dx lie between images along y
+RADIUS = (80 / np.pi) ** 0.5  # of an area of 80 PPs, whole shells of the lattice; 1.9 dx lie between images along y
 # dx = 1, c = 1. Viscosity and force make a flow of .01 c about.
 SCENE = """
     name = "own_image"
@@ -62,7 +62,8 @@ def columns(of: Run) -> np.ndarray:
 @pytest.mark.parametrize("motion", ["fixed", "free"])
 @pytest.mark.parametrize("ranks", [0, 1, 2])
 def test_a_body_and_its_images_are_a_lattice_of_bodies(tmp_path: Path, ranks: int, motion: str) -> None:
-    one, four = (finished(tmp_path, cells, Options(ranks=ranks, domains="2x1" if ranks == 2 else None), motion) for cells in (1, 2))
+    options = Options(ranks=ranks, domains="2x1" if ranks == 2 else None)
+    one, four = (finished(tmp_path, cells, options, motion) for cells in (1, 2))
     assert four.record["frozen_particles"] == 4 * one.record["frozen_particles"]
     assert four.series["fluid_particles"][0] == 4 * one.series["fluid_particles"][0]
     a, b = columns(one), columns(four)
