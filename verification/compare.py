@@ -60,8 +60,12 @@ class PairDifference:
     fields: dict[str, tuple[str, str]]  # integers of the one and the other by field; empty where one has no such pair
     counts: tuple[int, int]  # how often each has it
 
+    @property
+    def lacks(self) -> bool:
+        return self.counts[0] != self.counts[1]
+
     def line(self, names: tuple[str, str]) -> str:
-        if self.counts[0] != self.counts[1]:
+        if self.lacks:
             what = f"{self.counts[0]} times | {self.counts[1]} times"
         else:
             what = ", ".join(f"{field} {one} | {other}" for field, (one, other) in self.fields.items())
@@ -70,13 +74,14 @@ class PairDifference:
 
 @dataclass(frozen=True)
 class Explanation:
-    """Where two variants part: the first step whose states differ, what differs there, and for the first PP the pairs
-    of the step that led to it."""
+    """Where two variants part: the first step whose states differ, what differs there, and the pairs of the step that led
+    to it: those of a PP for which one variant lacks a pair, if one is found, else of the first PP."""
 
     names: tuple[str, str]
     step: int
     difference: Difference
     particle: int | None = None
+    traced: int | None = None
     pairs: tuple[PairDifference, ...] = ()
     at_start: bool = False
 
@@ -93,6 +98,8 @@ class Explanation:
         elif self.at_start:
             lines.append("the states differ before the first step: they were built or read differently")
         elif self.particle is not None and self.pairs:
+            if self.traced != self.particle:
+                lines.append(f"PP {self.traced} lacks pairs; a missing neighbour is missing from densities too, and so shows in other pairs:")
             lines += [pair.line(self.names) for pair in self.pairs]
         elif self.particle is not None:
             lines.append(f"all pairs of PP {self.particle} are equal: the difference arose after they were taken, where "
@@ -122,7 +129,7 @@ def trace_differences(one: Path, other: Path) -> tuple[PairDifference, ...]:
         if of_a and of_b:
             fields = {name: (of_a[0][name], of_b[0][name]) for name in of_a[0] if of_a[0][name] != of_b[0][name]}
         found.append(PairDifference(partner, fields, (len(of_a), len(of_b))))
-    return tuple(sorted(found, key=lambda pair: pair.counts[0] == pair.counts[1]))  # a missing pair changes others by its density
+    return tuple(sorted(found, key=lambda pair: not pair.lacks))
 
 
 def _rerun(scene: Path, out: Path, pair: tuple[Run, Run], name: str, changes: dict, *overrides: str) -> list[Run]:
@@ -132,6 +139,15 @@ def _rerun(scene: Path, out: Path, pair: tuple[Run, Run], name: str, changes: di
         options = replace(finished.options, **changes, overrides=(*finished.options.overrides, *overrides))
         runs.append(run(scene, out / f"{name}-{which}", options))
     return runs
+
+
+SUSPECTS = 12
+
+
+def _suspects(found: Difference) -> list[int]:
+    """Some of the PPs that differ, the first among them."""
+    ids = [i for i, fields in found.particles.items() if fields != ("existence",)]
+    return ids[:: max(1, -(-len(ids) // SUSPECTS))]
 
 
 def explain(scene: Path, out: Path, comparison: Comparison) -> Explanation:
@@ -158,6 +174,11 @@ def explain(scene: Path, out: Path, comparison: Comparison) -> Explanation:
     if particle is None or step == 0:
         return Explanation(names, step, found, particle, at_start=step == 0)
 
-    traced = {"steps": step, "trace": f"{particle}@{step - 1}"}
-    files = [r.folder / "trace.csv" for r in _rerun(scene, out, pair, "trace", traced, f"output.sample={step}", *quiet)]
-    return Explanation(names, step, found, particle, trace_differences(*files))
+    traces: dict[int, tuple[PairDifference, ...]] = {}
+    for suspect in _suspects(found):
+        traced = {"steps": step, "trace": f"{suspect}@{step - 1}"}
+        reruns = _rerun(scene, out, pair, "trace", traced, f"output.sample={step}", *quiet)
+        traces[suspect] = trace_differences(*(finished.folder / "trace.csv" for finished in reruns))
+        if not traces[suspect] or traces[suspect][0].lacks:  # either the pairs are not to blame, or this is the one
+            return Explanation(names, step, found, particle, suspect, traces[suspect])
+    return Explanation(names, step, found, particle, particle, traces[particle])

@@ -111,7 +111,7 @@ def test_a_restart_of_the_gas_solid_scene(tmp_path: Path) -> None:
     run(file, tmp_path / "restarted", Options(ranks=4, steps=STEPS // 2, overrides=overrides))
     (checkpoint,) = (tmp_path / "restarted" / "checkpoints").iterdir()
     options = Options(ranks=3, steps=STEPS, overrides=overrides, resume=checkpoint)
-    assert_all_equal([through, run(file, tmp_path / "restarted", options)], samples=11)
+    assert_all_equal([through, run(file, tmp_path / "restarted", options)], samples=21)
 
 
 @pytest.mark.parametrize("scene", ["crossing_2d", "crossing_3d"])
