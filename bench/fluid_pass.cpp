@@ -1,6 +1,6 @@
-// The pair passes alone, that of densities and that of forces together, and the search for its lists: a fluid in disorder, 39 neighbours in the plane and 77 in space,
-// about 10^5 PPs. The number of cells to a reach is varied: it decides how many candidates the search meets, and how
-// the PPs lie in blocks.
+// The pair passes alone, that of densities and that of forces together, and the search for its lists: a fluid in
+// disorder, 39 neighbours in the plane and 77 in space, about 10^5 PPs. The number of cells to a reach is varied: it
+// decides how many candidates the search meets, and how the PPs lie in blocks.
 #include "parallel/fluid_pass.hpp"
 
 #include <benchmark/benchmark.h>

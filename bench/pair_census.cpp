@@ -1,4 +1,5 @@
-// What the pair passes of a step meet, of densities and of forces together, and what they cost, on a fluid in disorder: 39 neighbours in the plane, 77 in space.
+// What the pair passes of a step meet, of densities and of forces together, and what they cost, on a fluid in disorder:
+// 39 neighbours in the plane, 77 in space.
 //   bench-pair_census SIDE_2D SIDE_3D ROUNDS
 // SIDE: PPs along each axis. ROUNDS: of the timed parts; with 0 each part is made once, untimed, for a tool that counts
 // instructions. Prints one line a figure; those in time are medians over the rounds, ns a pair within the cutoff.
@@ -49,7 +50,8 @@ class Parts {
   [[gnu::noinline]] void lay_out() { lay_blocks(); }
   [[gnu::noinline]] void distances() {
     for (int pass = 0; pass < passes; ++pass)
-      for (const auto& lists : pass_.kept()) lists.for_each_chunk(numbers_, blocks_.data(), squares_, [](auto, auto) {});
+      for (const auto& lists : pass_.kept())
+        lists.for_each_chunk(numbers_, blocks_.data(), squares_, [](auto, auto) {});
   }
   [[gnu::noinline]] void whole_pass() { sum(); }
 

@@ -30,9 +30,8 @@ template <class AddOptions, class Run>
 int run_command(int argc, char** argv, const Group& group, const std::string& program, AddOptions&& add_options,
                 Run&& run) {
   CLI::App app("Macro-scale pseudo-particle modelling of particle-fluid systems", program);
-  app.set_version_flag(
-      "--version", fmt::format("{} {} ({}), numerics {}, {}", program, build_info::version, build_info::commit, numerics_version,
-                               instruction_set));
+  app.set_version_flag("--version", fmt::format("{} {} ({}), numerics {}, {}", program, build_info::version,
+                                                build_info::commit, numerics_version, instruction_set));
   app.require_subcommand(1);
   CLI::App& command = *app.add_subcommand("run", "run a scene");
   RunOptions options;

@@ -76,8 +76,9 @@ int main(int argc, char** argv) try {
   watch_stop_signals();
   DomainOptions domain_options;
   const auto add_options = [&](CLI::App& command) {
-    command.add_option("--domains", domain_options.grid,
-                       "domains along x, y(, z), as in 2x4 (default: slabs along the longest side, of equal ones the last)");
+    command.add_option(
+        "--domains", domain_options.grid,
+        "domains along x, y(, z), as in 2x4 (default: slabs along the longest side, of equal ones the last)");
     command.add_option("--threads", domain_options.engine.threads, "threads a process")->check(CLI::Range(1, 256));
     command
         .add_option("--rebalance", domain_options.engine.rebalance,

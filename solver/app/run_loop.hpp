@@ -144,8 +144,8 @@ class RunLoop {
 template <int D, class E>
 requires Engine<E, D>
 void RunLoop<D, E>::begin() {
-  const auto& [scene, model, group, options, start, limits, program, warnings, program_options, domains, threads, faces] =
-      setup_;
+  const auto& [scene, model, group, options, start, limits, program, warnings, program_options, domains, threads,
+               faces] = setup_;
   check_trace();
   on_first(group, [&] { make_folder(folder_); });
   record_.program = program;
@@ -278,8 +278,8 @@ void RunLoop<D, E>::check_mach(const Totals<D>& totals, const FluidParticles<D>&
   if (too_fast_ || totals.fluid_count == 0) return;
   Vec<D, double> mean;
   for (int axis = 0; axis < D; ++axis)
-    mean[axis] = static_cast<double>(totals.fluid_momentum[axis]) * velocity_quantum /
-                 static_cast<double>(totals.fluid_count);
+    mean[axis] =
+        static_cast<double>(totals.fluid_momentum[axis]) * velocity_quantum / static_cast<double>(totals.fluid_count);
   const Fastest<D> fastest = find_fastest(fluid, mean, setup_.group);
   if (fastest.mach <= largest_local_mach) return;
   too_fast_ = true;
@@ -287,11 +287,10 @@ void RunLoop<D, E>::check_mach(const Totals<D>& totals, const FluidParticles<D>&
   std::vector<double> place;
   for (int axis = 0; axis < D; ++axis)
     place.push_back(fastest.position[axis] * model.pair.length[axis] * model.units.length);
-  record_.warnings.push_back(
-      fmt::format("step {}: local Mach number {:.3g} at ({:.6g}), beyond {}: the fluid is compressed there and may tear; a "
-                  "sound speed of {:.3g} would keep it at a tenth",
-                  step(), fastest.mach, fmt::join(place, ", "), largest_local_mach,
-                  10.0 * fastest.mach * model.units.velocity));
+  record_.warnings.push_back(fmt::format(
+      "step {}: local Mach number {:.3g} at ({:.6g}), beyond {}: the fluid is compressed there and may tear; a "
+      "sound speed of {:.3g} would keep it at a tenth",
+      step(), fastest.mach, fmt::join(place, ", "), largest_local_mach, 10.0 * fastest.mach * model.units.velocity));
   say_on_first([&] { fmt::print(stderr, "warning: {}\n", record_.warnings.back()); });
 }
 

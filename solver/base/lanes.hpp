@@ -204,8 +204,8 @@ MAPPM_INLINE std::uint32_t sum_of_lanes(const UInt32Lanes& lanes) {
 #endif
 }
 
-/// Writes those of as many numbers as there are lanes that the mask names, side by side, and returns how many these are.
-/// As many as there are lanes are overwritten.
+/// Writes those of as many numbers as there are lanes that the mask names, side by side, and returns how many these
+/// are. As many as there are lanes are overwritten.
 MAPPM_INLINE std::uint32_t store_chosen(const Lanes::mask_type& chosen, const std::uint32_t* numbers,
                                         std::uint32_t* to) {
 #if defined(__AVX512F__) && defined(__AVX512VL__)

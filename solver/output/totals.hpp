@@ -6,8 +6,8 @@
 
 #include "base/group.hpp"
 #include "base/vec.hpp"
-#include "particles/model.hpp"
 #include "particles/density_field.hpp"
+#include "particles/model.hpp"
 
 namespace mappm {
 

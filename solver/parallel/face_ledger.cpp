@@ -59,8 +59,7 @@ void FaceLedger<D>::for_each_near(const Vec<D, double>& x, Visit&& visit) const 
 }
 
 template <int D>
-std::vector<FaceImpulse<D>> FaceLedger<D>::faces(const FluidParticles<D>& fluid,
-                                                 std::span<const double> density,
+std::vector<FaceImpulse<D>> FaceLedger<D>::faces(const FluidParticles<D>& fluid, std::span<const double> density,
                                                  const std::vector<FrozenInStep<D>>& frozen) const {
   std::map<int, Vec<D, Int128>> from;
   with_pair_numbers(model_, [&]<class Kernel, class Numbers>(Kernel, auto, const Numbers& numbers) {

@@ -95,15 +95,16 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
   for_each_band(grid, [&](int first, int last, Search& search, std::size_t band) {
     for (const Part part : {inner, rest}) kept_[parts * band + part].clear();
     for_each_row(grid, first, last, [&](const Vec<D, int>& row) {
-      for_each_block_list(fluid, grid, row, reach, search, [&](std::uint32_t place, std::span<const std::uint32_t> near) {
-        const auto is_foreign = [&](std::uint32_t other) { return foreign_[other] != 0; };
-        const bool alone = apart && foreign_[place / lanes] == 0 && std::ranges::none_of(near, is_foreign);
-        const bool all = inside[place] != 0;
-        const auto is_wide = [&](std::uint32_t other) { return wide[other] != 0 || wide[place / lanes] != 0; };
-        kept_[parts * band + (alone ? inner : rest)].add(
-            place, near, [&](std::uint32_t other) { return all || reaches_inside[other] != 0; }, is_wide,
-            [&](std::uint32_t other) { return lanes_near(fluid, place, other); });
-      });
+      for_each_block_list(
+          fluid, grid, row, reach, search, [&](std::uint32_t place, std::span<const std::uint32_t> near) {
+            const auto is_foreign = [&](std::uint32_t other) { return foreign_[other] != 0; };
+            const bool alone = apart && foreign_[place / lanes] == 0 && std::ranges::none_of(near, is_foreign);
+            const bool all = inside[place] != 0;
+            const auto is_wide = [&](std::uint32_t other) { return wide[other] != 0 || wide[place / lanes] != 0; };
+            kept_[parts * band + (alone ? inner : rest)].add(
+                place, near, [&](std::uint32_t other) { return all || reaches_inside[other] != 0; }, is_wide,
+                [&](std::uint32_t other) { return lanes_near(fluid, place, other); });
+          });
     });
     for (const Part part : {inner, rest}) blocks_.expect(kept_[parts * band + part].blocks());
   });
@@ -125,8 +126,8 @@ void FluidPass<D, Numbers>::find_boxes(const FluidParticles<D>& fluid) {
   }
 }
 
-/// Calls work(place, blocks) for the PPs of this row: the blocks of later places whose boxes come within the reach (rcut),
-/// in rising order.
+/// Calls work(place, blocks) for the PPs of this row: the blocks of later places whose boxes come within the reach
+/// (rcut), in rising order.
 template <int D, class Numbers>
 template <class Work>
 void FluidPass<D, Numbers>::for_each_block_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
@@ -243,8 +244,7 @@ std::optional<std::uint32_t> FluidPass<D, Numbers>::close_densities(std::span<co
   }
   for (const std::uint32_t i : others) density[i] = model_.rest_density;
   set_densities<false>(density);
-  const auto wrong =
-      std::ranges::find_if(density, [&](double rho) { return !is_in_range(rho, model_.rest_density); });
+  const auto wrong = std::ranges::find_if(density, [&](double rho) { return !is_in_range(rho, model_.rest_density); });
   if (wrong == density.end()) return std::nullopt;
   return static_cast<std::uint32_t>(wrong - density.begin());
 }

@@ -70,14 +70,15 @@ class FluidPass {
   FluidPass(const Model<D>& model, int threads)
       : model_(model), numbers_(model.pair, model.rest_density), threads_(threads) {}
 
-  /// Finds the pairs of which one PP lies in `region`, up to a distance of `reach` (rcut, at least 1): the sums find all
-  /// within rcut until two PPs have come nearer by the rest, or one from outside the region has entered the part that
-  /// matters. `fluid` is in the order of `grid`, whose cells are fit to that reach or a longer one. `foreign`: the PPs
-  /// that others than `moved` may change. With `apart`, the inner sums are of pairs that have nothing to do with these.
+  /// Finds the pairs of which one PP lies in `region`, up to a distance of `reach` (rcut, at least 1): the sums find
+  /// all within rcut until two PPs have come nearer by the rest, or one from outside the region has entered the part
+  /// that matters. `fluid` is in the order of `grid`, whose cells are fit to that reach or a longer one. `foreign`: the
+  /// PPs that others than `moved` may change. With `apart`, the inner sums are of pairs that have nothing to do with
+  /// these.
   void list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region, double reach,
             std::span<const std::uint32_t> foreign, bool apart);
-  /// With the PPs in the order of `list`: densities over all PPs near each PP of the region; those of others are partial
-  /// and meaningless. In two parts, of which only the second looks at foreign PPs.
+  /// With the PPs in the order of `list`: densities over all PPs near each PP of the region; those of others are
+  /// partial and meaningless. In two parts, of which only the second looks at foreign PPs.
   void sum_inner_densities(const CellGrid<D>& grid) { sum_densities_of(inner, grid); }
   void sum_rest_densities(FluidParticles<D>& fluid, const CellGrid<D>& grid);
   /// Adds those of PPs and FPs. `frozen` are all FPs in reach; sums[k] becomes the sum over PPs where FP k lies in the
@@ -175,9 +176,9 @@ class FluidPass {
   std::vector<Search> searches_;  // of the threads
   PairBlocks<D, Numbers> blocks_;
   std::array<Column<double>, D> box_low_, box_high_;  // of the blocks, rcut
-  std::vector<KeptLists<D, Numbers>> kept_;  // of each band one for each part
-  std::vector<std::uint8_t> foreign_;        // of each block: whether it holds a foreign PP
-  bool serves_on_ = false;                   // the lists, beyond this step
+  std::vector<KeptLists<D, Numbers>> kept_;           // of each band one for each part
+  std::vector<std::uint8_t> foreign_;                 // of each block: whether it holds a foreign PP
+  bool serves_on_ = false;                            // the lists, beyond this step
 };
 
 /// The pass in the precision of the model.

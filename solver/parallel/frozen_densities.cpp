@@ -80,8 +80,7 @@ void FrozenDensities<D>::add_pairs(const std::vector<FrozenInStep<D>>& frozen, s
     }
     sums[k] += sum_of_lanes(density);
   }
-  for (std::size_t n = 0; n < others_.size(); ++n)
-    sums[others_[n]] += blocks_[n / lane_count].density[n % lane_count];
+  for (std::size_t n = 0; n < others_.size(); ++n) sums[others_[n]] += blocks_[n / lane_count].density[n % lane_count];
 }
 
 template class FrozenDensities<2>;

@@ -296,9 +296,8 @@ void Halo<D>::take_frozen_densities(std::vector<BufferReader>& readers, PlacedSo
       for (auto body = first; body != last; ++body) {
         const auto begin = solids.frozen.begin() + static_cast<std::ptrdiff_t>(solids.first[body->second]);
         const auto end = solids.frozen.begin() + static_cast<std::ptrdiff_t>(solids.first[body->second + 1]);
-        const auto fp = std::lower_bound(begin, end, given.index, [](const FrozenInStep<D>& one, std::uint64_t index) {
-          return one.index < index;
-        });
+        const auto fp = std::lower_bound(
+            begin, end, given.index, [](const FrozenInStep<D>& one, std::uint64_t index) { return one.index < index; });
         if (fp != end && fp->index == given.index) set_density(model_, *fp, given.density);
       }
     }

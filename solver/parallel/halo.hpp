@@ -53,8 +53,8 @@ class Halo {
   void begin_exchange(State<D>& state, Residents<D>& residents, Stopwatch& watch);
   bool end_exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch);
 
-  /// In a step, after `settle` where the PPs have not stayed: densities of what lies in this region go to those who have
-  /// ghosts of it: density[i] of PP i, and of the FPs.
+  /// In a step, after `settle` where the PPs have not stayed: densities of what lies in this region go to those who
+  /// have ghosts of it: density[i] of PP i, and of the FPs.
   void begin_densities(const FluidParticles<D>& fluid, const Residents<D>& residents, std::span<double> density,
                        const PlacedSolids<D>& solids);
   /// Those of ghosts, from others.

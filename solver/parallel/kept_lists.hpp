@@ -29,8 +29,7 @@ class KeptLists {
   /// of them count, one a bit: partners(block).
   template <class Chosen, class NamedBlocks, class LanesOf>
   MAPPM_INLINE void add(std::uint32_t place, std::span<const std::uint32_t> near, const Chosen& chosen,
-                        const NamedBlocks& named,
-                        const LanesOf& partners) {
+                        const NamedBlocks& named, const LanesOf& partners) {
     const std::size_t first = blocks_.size();
     reserve_tightly(blocks_, first + near.size());
     blocks_.resize(first + near.size());
@@ -52,20 +51,22 @@ class KeptLists {
   /// thread.
   template <class Kernel, bool transport>
   void sum(const Numbers& numbers, PairBlocks<D, Numbers>& blocks, Column<Real>& squares) const {
-    for_each_walk(numbers, blocks.data(), squares, [&](auto&& walk) __attribute__((always_inline)) {
-      sum_blocks<Kernel, transport, false, typename Numbers::ListRounding, D>(
-          numbers, blocks.data(), walk, [&](std::uint32_t place) { return blocks.centre(place); },
-          [](std::uint32_t) { return UnitFactor{}; },
-          [&](std::uint32_t place, const auto& sums) { blocks.add(place, sums); });
-    });
+    for_each_walk(
+        numbers, blocks.data(), squares, [&](auto&& walk) __attribute__((always_inline)) {
+          sum_blocks<Kernel, transport, false, typename Numbers::ListRounding, D>(
+              numbers, blocks.data(), walk, [&](std::uint32_t place) { return blocks.centre(place); },
+              [](std::uint32_t) { return UnitFactor{}; },
+              [&](std::uint32_t place, const auto& sums) { blocks.add(place, sums); });
+        });
   }
   /// The same of the densities.
   template <class Kernel>
   void sum_densities(const Numbers& numbers, PairBlocks<D, Numbers>& blocks, Column<Real>& squares) const {
-    for_each_walk(numbers, blocks.data(), squares, [&](auto&& walk) __attribute__((always_inline)) {
-      sum_densities_of_blocks<Kernel, typename Numbers::ListRounding, D>(
-          numbers, blocks.data(), walk, [&](std::uint32_t place, auto sum) { blocks.add_density(place, sum); });
-    });
+    for_each_walk(
+        numbers, blocks.data(), squares, [&](auto&& walk) __attribute__((always_inline)) {
+          sum_densities_of_blocks<Kernel, typename Numbers::ListRounding, D>(
+              numbers, blocks.data(), walk, [&](std::uint32_t place, auto sum) { blocks.add_density(place, sum); });
+        });
   }
   /// Calls visit(place, partner) for every pair that the lists hold, within the cutoff or not.
   template <class Visit>
@@ -117,7 +118,8 @@ class KeptLists {
   MAPPM_INLINE void for_each_walk(const Numbers& numbers, const PairBlock<D, Numbers>* blocks, Column<Real>& squares,
                                   Use&& use) const {
     for_each_chunk(
-        numbers, blocks, squares, [&](std::span<const Centre> centres, std::size_t base) __attribute__((always_inline)) {
+        numbers, blocks,
+        squares, [&](std::span<const Centre> centres, std::size_t base) __attribute__((always_inline)) {
           Real* const distances = squares.data();
           use([&](auto&&... calls) __attribute__((always_inline)) {
             detail::for_each_block<RealLanes>(

@@ -169,8 +169,8 @@ class PairBlocks {
   MAPPM_INLINE void add_density(std::uint32_t place, Sum given) {
     add_to(blocks_[place / lanes].density[place % lanes], given);
   }
-  /// Tells which blocks the lists will add to, one by one, with the excess of their rounding, in each of the two passes.
-  /// Valid until all are filled.
+  /// Tells which blocks the lists will add to, one by one, with the excess of their rounding, in each of the two
+  /// passes. Valid until all are filled.
   void expect(std::span<const std::uint32_t> blocks) {
     if constexpr (Numbers::ListRounding::excess != 0)
       for (const std::uint32_t block : blocks) ++contributions_[block];

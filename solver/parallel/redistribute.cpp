@@ -26,7 +26,8 @@ Domains<D> domains_by_load(const Model<D>& model, const Domains<D>& domains, con
     auto& bins = profile[static_cast<std::size_t>(axis)];
     bins.assign(profile_bins, 0);
     for (const double x : state.fluid.x(axis)) ++bins[bin_of(wrap_position(x))];
-    for (const Solid<D>& solid : state.solids) bins[bin_of(wrap_position(solid.x[axis]))] += model.shapes[solid.shape].frozen.size();
+    for (const Solid<D>& solid : state.solids)
+      bins[bin_of(wrap_position(solid.x[axis]))] += model.shapes[solid.shape].frozen.size();
     communicator.sum(std::span(bins));
   }
   return balanced<D>(model, domains, profile);

@@ -85,8 +85,8 @@ class Residents {
   bool refresh(FluidParticles<D>& fluid, std::span<BufferReader> readers);
   /// In any step, once ghosts are up to date: gives images of own PPs the density of these.
   void copy_densities(const FluidParticles<D>& fluid, std::span<double> density) const;
-  /// Gives ghosts the densities in message n: their number, ids, and densities (PPs per rcut^D). All images of a PP have
-  /// its density.
+  /// Gives ghosts the densities in message n: their number, ids, and densities (PPs per rcut^D). All images of a PP
+  /// have its density.
   void take_densities(const FluidParticles<D>& fluid, std::size_t n, BufferReader& reader, std::span<double> density);
   /// Ends a stay: only what this process owned in the last step remains in `fluid`.
   void leave(FluidParticles<D>& fluid);
@@ -139,8 +139,8 @@ class Residents {
     }
   };
   Sequences states_, densities_;
-  std::vector<std::uint32_t> sequence_;    // of the message that is read
-  std::vector<std::uint32_t> twins_;       // of each place another image of its PP, in a circle; itself where it is alone
+  std::vector<std::uint32_t> sequence_;  // of the message that is read
+  std::vector<std::uint32_t> twins_;     // of each place another image of its PP, in a circle; itself where it is alone
 };
 
 }  // namespace mappm

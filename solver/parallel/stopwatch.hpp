@@ -8,8 +8,8 @@
 namespace mappm {
 
 /// Of a step: messages of PPs; where it is found anew, their order by cells, and the lists of their pairs;
-/// densities, and forces, of pairs of PPs; both of PPs and FPs; FPs, contacts and motion of solids; copies of solids and reports on them, their messages
-/// included; motion of PPs.
+/// densities, and forces, of pairs of PPs; both of PPs and FPs; FPs, contacts and motion of solids; copies of solids
+/// and reports on them, their messages included; motion of PPs.
 enum class Phase { exchange, sort, lists, densities, pairs, frozen_pairs, solids, copies, integrate };
 
 class Stopwatch {

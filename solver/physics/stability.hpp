@@ -33,8 +33,8 @@ std::vector<LatticeWave> lattice_waves(KernelKind kernel, double reach);
 /// `shift_rate` kappa h in dx.
 bool is_stable(const LatticeWave& wave, double step, double viscosity, double shift_rate);
 
-/// By how much the friction of a PP at a plane wall may exceed that of one in the fluid: by the factors beta, which are at
-/// most `largest_no_slip`, of the FPs beyond. The PP is dx / 10 from the surface, nearer than all but a few come.
+/// By how much the friction of a PP at a plane wall may exceed that of one in the fluid: by the factors beta, which are
+/// at most `largest_no_slip`, of the FPs beyond. The PP is dx / 10 from the surface, nearer than all but a few come.
 template <int D>
 double wall_friction(KernelKind kernel, double reach, double largest_no_slip);
 

@@ -180,10 +180,11 @@ std::vector<std::string> scene_warnings(const Scene& scene, const Model<D>& mode
   const double step = model.dt * model.units.time();
   const StepLimit doubtful = limits.first(&StepLimit::doubtful);
   if (step > (1.0 + 1e-9) * doubtful.doubtful)
-    lines.push_back(fmt::format("{} = {}: the step {:.6g} is near {:.6g}, the last that {} allows: results may be wrong "
-                                "without any sign; {}",
-                                step_key(scene), declared_step(scene), step, doubtful.last, doubtful.of,
-                                lower_step(scene, doubtful.doubtful, limits)));
+    lines.push_back(
+        fmt::format("{} = {}: the step {:.6g} is near {:.6g}, the last that {} allows: results may be wrong "
+                    "without any sign; {}",
+                    step_key(scene), declared_step(scene), step, doubtful.last, doubtful.of,
+                    lower_step(scene, doubtful.doubtful, limits)));
   const bool meeting = std::count_if(scene.bodies.begin(), scene.bodies.end(),
                                      [](const BodyScene& body) { return body.motion == Motion::free; }) > 0 &&
                        (scene.bodies.size() > 1 || scene.bodies[0].positions.size() > 1);

@@ -394,7 +394,8 @@ TEST(FluidPass, sums_over_all_pairs_with_other_kernels) {
   for (const Lists kind : all_kinds)
     for (const int threads : {1, 2}) {
       expect_sums_of_all_pairs<2, DoublePairs<2>, Lucy>({with_kernel(swirl, "lucy"), 1000, 8, 1, threads, kind, 5000});
-      expect_sums_of_all_pairs<3, SinglePairs<3>, Lucy>({with_kernel(deep, "lucy"), 1000, 8, 1.45, threads, kind, 5000});
+      expect_sums_of_all_pairs<3, SinglePairs<3>, Lucy>(
+          {with_kernel(deep, "lucy"), 1000, 8, 1.45, threads, kind, 5000});
       // Its weight is singular, and an impulse must not leave its range.
       expect_sums_of_all_pairs<2, DoublePairs<2>, MpsWeight>(
           {with_kernel(swirl, "mps"), 0, 8, 1, threads, kind, 1000, true});

@@ -133,16 +133,18 @@ TEST_F(CheckpointFile, refuses_a_file_of_another_kind) {
 
 TEST_F(CheckpointFile, refuses_another_version_of_the_format) {
   alter(nullptr, "version");
-  EXPECT_TRUE(contains(refused(), "c.h5: has version 4 of the checkpoint format, this program reads version 3; resume "
-                                  "with the program that wrote it"))
+  EXPECT_TRUE(contains(refused(),
+                       "c.h5: has version 4 of the checkpoint format, this program reads version 3; resume "
+                       "with the program that wrote it"))
       << refused();
 }
 
 TEST_F(CheckpointFile, refuses_what_other_numerics_have_computed) {
   alter(nullptr, "numerics");
-  EXPECT_TRUE(contains(refused(), fmt::format("c.h5: was computed by numerics version {}, this program has {}: going on "
-                                              "would give neither's results; resume with the program that wrote it",
-                                              numerics_version + 1, numerics_version)))
+  EXPECT_TRUE(
+      contains(refused(), fmt::format("c.h5: was computed by numerics version {}, this program has {}: going on "
+                                      "would give neither's results; resume with the program that wrote it",
+                                      numerics_version + 1, numerics_version)))
       << refused();
 }
 
@@ -185,8 +187,9 @@ TEST_P(AlteredCheckpoint, is_refused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Everywhere, AlteredCheckpoint,
-                         testing::Values("/fluid/id", "/fluid/x_x", "/fluid/v_y", "/solids/words", "/solids/contacts", "start_momentum", "outside_impulse",
-                                         "step", "sampled_step", "scene_hash", "digest", "ledger_hash"),
+                         testing::Values("/fluid/id", "/fluid/x_x", "/fluid/v_y", "/solids/words", "/solids/contacts",
+                                         "start_momentum", "outside_impulse", "step", "sampled_step", "scene_hash",
+                                         "digest", "ledger_hash"),
                          [](const auto& parameter) {
                            std::string name = parameter.param;
                            std::replace(name.begin(), name.end(), '/', '_');

@@ -26,7 +26,8 @@ constexpr const char* si_header =
 Columns hand_columns(const UnitNames& units) {
   State<2> state = hand::state();
   state.outside_impulse = hand::iota(0.25, 0.5);  // leaves a defect of a quarter: 2^46 iota
-  return series_columns(hand::model(), units, measure(hand::model(), hand::sample(state), SingleGroup()), state.start_momentum, 4);
+  return series_columns(hand::model(), units, measure(hand::model(), hand::sample(state), SingleGroup()),
+                        state.start_momentum, 4);
 }
 
 TEST(Series, row_is_the_one_worked_by_hand) {

@@ -9,7 +9,8 @@ namespace mappm {
 namespace {
 
 TEST(SolidWords, have_a_length_that_follows_from_the_fields) {
-  // id, shape, group, motion, x, 2 words for each of momentum, angular momentum and two impulses, orientation, the number of contacts
+  // id, shape, group, motion, x, 2 words for each of momentum, angular momentum and two impulses, orientation, the
+  // number of contacts
   EXPECT_EQ(solid_word_count<2>(), 4u + 2 + 2 * (2 + 1 + 2 + 2) + 2 + 1);
   EXPECT_EQ(solid_word_count<3>(), 4u + 3 + 2 * (3 + 3 + 3 + 3) + 4 + 1);
   EXPECT_EQ(contact_word_count<2>(), 5u);

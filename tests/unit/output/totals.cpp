@@ -79,7 +79,8 @@ TEST(Totals, of_angular_momentum_do_not_depend_on_the_image_of_a_solid) {
 
 TEST(Totals, of_the_ledger_close_exactly_and_show_a_single_quantum) {
   State<2> state = hand::state();
-  EXPECT_TRUE(momentum_defect(measure(hand::model(), hand::sample(state), SingleGroup()), state.start_momentum) == hand::iota(0, 0));
+  EXPECT_TRUE(momentum_defect(measure(hand::model(), hand::sample(state), SingleGroup()), state.start_momentum) ==
+              hand::iota(0, 0));
   state.solids[3].momentum[1] += 1;
   const auto defect = momentum_defect(measure(hand::model(), hand::sample(state), SingleGroup()), state.start_momentum);
   EXPECT_TRUE(defect[0] == 0 && defect[1] == 1);

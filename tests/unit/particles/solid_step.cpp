@@ -283,9 +283,10 @@ TEST(FinishStep, a_solid_that_moves_too_far_stays_and_is_reported) {
 }
 
 TEST(DensityMessage, names_step_place_value_and_cause) {
-  EXPECT_EQ(density_message(3, frozen_text(4, 1), 0.05),
-            "step 3: solid 4, frozen particle 1: density 0.05 times rest, outside 0.1 to 10; the fluid tears or collapses "
-            "there: raise the sound speed or resolve the gap");
+  EXPECT_EQ(
+      density_message(3, frozen_text(4, 1), 0.05),
+      "step 3: solid 4, frozen particle 1: density 0.05 times rest, outside 0.1 to 10; the fluid tears or collapses "
+      "there: raise the sound speed or resolve the gap");
   EXPECT_EQ(density_message(12, particle_text(345), 15.0).find("step 12: particle 345: density 15 times rest"), 0u);
 }
 

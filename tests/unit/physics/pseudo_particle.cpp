@@ -46,13 +46,13 @@ TEST(PseudoParticle, shifts_by_the_share_that_its_vorticity_allows) {
     EXPECT_EQ(advance(p.x, p.v, sums, make_step()), RangeFault::none);
     return p.x - Vec<2, double>{{1000.0 + 0x1p19, 5.0 - 0x1p11}};
   };
-  EXPECT_EQ(shifted(0), (Vec<2, double>{}));                                 // at rest there is none
-  EXPECT_EQ(shifted(1 << 19), (Vec<2, double>{{250.0, -1000.0}}));           // (1/2)^2
-  EXPECT_EQ(shifted(-(1 << 19)), (Vec<2, double>{{250.0, -1000.0}}));        // whichever way the fluid turns
-  EXPECT_EQ(shifted(1 << 20), (Vec<2, double>{{1000.0, -4000.0}}));          // all of it
-  EXPECT_EQ(shifted(5 << 20), (Vec<2, double>{{1000.0, -4000.0}}));          // and never more
-  EXPECT_EQ(shifted((1 << 20) / 100), (Vec<2, double>{{0.0, 0.0}}));         // 1e-4 of it, rounded to quanta
-  EXPECT_EQ(shifted((1 << 20) * 3 / 100), (Vec<2, double>{{1.0, -4.0}}));    // 0.9 and 3.6 quanta
+  EXPECT_EQ(shifted(0), (Vec<2, double>{}));                               // at rest there is none
+  EXPECT_EQ(shifted(1 << 19), (Vec<2, double>{{250.0, -1000.0}}));         // (1/2)^2
+  EXPECT_EQ(shifted(-(1 << 19)), (Vec<2, double>{{250.0, -1000.0}}));      // whichever way the fluid turns
+  EXPECT_EQ(shifted(1 << 20), (Vec<2, double>{{1000.0, -4000.0}}));        // all of it
+  EXPECT_EQ(shifted(5 << 20), (Vec<2, double>{{1000.0, -4000.0}}));        // and never more
+  EXPECT_EQ(shifted((1 << 20) / 100), (Vec<2, double>{{0.0, 0.0}}));       // 1e-4 of it, rounded to quanta
+  EXPECT_EQ(shifted((1 << 20) * 3 / 100), (Vec<2, double>{{1.0, -4.0}}));  // 0.9 and 3.6 quanta
 }
 
 TEST(ShiftShare, by_hand) {

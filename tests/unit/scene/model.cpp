@@ -40,7 +40,7 @@ TEST(SceneModel, StepIsTheSmallestLimit) {
   EXPECT_DOUBLE_EQ(step, 0.5 * wave_step(0.08, 4.0, 0.5));
   EXPECT_DOUBLE_EQ(one_disc_model({"run.step_factor=0.5"}).dt, 0.5 * step);
   EXPECT_DOUBLE_EQ(one_disc_model({"fluid.viscosity=60.0"}).dt, 0.5 * wave_step(8.0, 4.0, 0.5));
-  EXPECT_DOUBLE_EQ(one_disc_model({"fluid.viscosity=0.0"}).dt, 0.5);  // h / c
+  EXPECT_DOUBLE_EQ(one_disc_model({"fluid.viscosity=0.0"}).dt, 0.5);         // h / c
   EXPECT_DOUBLE_EQ(one_disc_model({"force.fluid=[0.0, 2500.0]"}).dt, 0.05);  // 0.25 sqrt(1e-4)
 }
 
@@ -61,8 +61,8 @@ TEST(SceneModel, ALightSolidLimitsTheStep) {
   EXPECT_EQ(light.limits.ruling().of, "added mass");
   EXPECT_NEAR(light.model.dt, 0.7 * last, 1e-14);
   EXPECT_NEAR(light.limits.light_solids.last, 0.05 * last, 1e-14) << "in units of the scene";
-  const BuiltModel<2> held = make_model<2>(
-      read(one_disc, {"body.0.density=0.015", "body.0.motion=moving", "body.0.angular_velocity=0.0"}));
+  const BuiltModel<2> held =
+      make_model<2>(read(one_disc, {"body.0.density=0.015", "body.0.motion=moving", "body.0.angular_velocity=0.0"}));
   EXPECT_EQ(held.limits.light_solids.last, HUGE_VAL) << "what is held cannot be thrown";
 }
 
@@ -119,7 +119,8 @@ AngularVec<D, double> vorticity_on_lattice(const Model<D>& model, Velocity&& vel
         pair.v2 = 2.0 * v0 * v0;
         pair.pv2 = 0.0;
         const auto given = fluid_pair<WendlandC2, true>(model.pair, pair, r, cut_distance(dot(r, r)), 1.0);
-        for (int axis = 0; axis < angular_components<D>; ++axis) sum[axis] += static_cast<double>(given.vorticity[axis]);
+        for (int axis = 0; axis < angular_components<D>; ++axis)
+          sum[axis] += static_cast<double>(given.vorticity[axis]);
       }
   const ParticleStep<D> step = particle_step(model, 0);
   constexpr double a = 60.0, h = 0.5;
@@ -130,26 +131,31 @@ AngularVec<D, double> vorticity_on_lattice(const Model<D>& model, Velocity&& vel
 // iota / (2 V_0 dt) < 1e-13 each way, and of the terms.
 TEST(SceneModel, TheVorticityOfASolidRotationIsTwiceItsAngularVelocity) {
   const Model<2> plane = make_model<2>(read(plain_fluid)).model;
-  const auto turning =
-      vorticity_on_lattice<2>(plane, [](const Vec<2, double>& r) { return Vec<2, double>{{-0.03 * r[1], 0.03 * r[0]}}; });
+  const auto turning = vorticity_on_lattice<2>(plane, [](const Vec<2, double>& r) {
+    return Vec<2, double>{{-0.03 * r[1], 0.03 * r[0]}};
+  });
   EXPECT_NEAR(turning[0], 0.06, 1e-12);
   const Model<3> space = make_model<3>(read(plain_fluid, {"box.size=[1.0, 1.0, 1.0]"})).model;
   const AngularVec<3, double> omega{{0.01, -0.02, 0.03}};
-  const auto in_space = vorticity_on_lattice<3>(space, [&](const Vec<3, double>& r) { return cross<3, double>(omega, r); });
+  const auto in_space =
+      vorticity_on_lattice<3>(space, [&](const Vec<3, double>& r) { return cross<3, double>(omega, r); });
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(in_space[axis], 2.0 * omega[axis], 1e-12);
 }
 
 TEST(SceneModel, TheVorticityOfASimpleShearIsItsRate) {
   const Model<2> plane = make_model<2>(read(plain_fluid)).model;
-  const auto along_x =
-      vorticity_on_lattice<2>(plane, [](const Vec<2, double>& r) { return Vec<2, double>{{0.03 * r[1], 0.0}}; });
+  const auto along_x = vorticity_on_lattice<2>(plane, [](const Vec<2, double>& r) {
+    return Vec<2, double>{{0.03 * r[1], 0.0}};
+  });
   EXPECT_NEAR(along_x[0], -0.03, 1e-12);  // dv_y/dx - dv_x/dy
-  const auto stretched =
-      vorticity_on_lattice<2>(plane, [](const Vec<2, double>& r) { return Vec<2, double>{{0.03 * r[0], -0.03 * r[1]}}; });
+  const auto stretched = vorticity_on_lattice<2>(plane, [](const Vec<2, double>& r) {
+    return Vec<2, double>{{0.03 * r[0], -0.03 * r[1]}};
+  });
   EXPECT_NEAR(stretched[0], 0.0, 1e-12);
   const Model<3> space = make_model<3>(read(plain_fluid, {"box.size=[1.0, 1.0, 1.0]"})).model;
-  const auto along_z = vorticity_on_lattice<3>(
-      space, [](const Vec<3, double>& r) { return Vec<3, double>{{0.0, 0.0, 0.02 * r[1]}}; });
+  const auto along_z = vorticity_on_lattice<3>(space, [](const Vec<3, double>& r) {
+    return Vec<3, double>{{0.0, 0.0, 0.02 * r[1]}};
+  });
   EXPECT_NEAR(along_z[0], 0.02, 1e-12);  // dv_z/dy
   EXPECT_NEAR(along_z[1], 0.0, 1e-12);
   EXPECT_NEAR(along_z[2], 0.0, 1e-12);
@@ -248,13 +254,15 @@ TEST(SceneModel, StepBeyondItsLimitWarnsAndThenFails) {
   const std::vector<std::string> warnings = make_model<2>(read(one_disc, {step(near)})).warnings;
   ASSERT_EQ(warnings.size(), 1u);
   const std::string expected = fmt::format(
-      "run.step = {0:.6g}: the step {0:.6g} is near {1:.6g}, the last that {2} allows: results may be wrong without any "
+      "run.step = {0:.6g}: the step {0:.6g} is near {1:.6g}, the last that {2} allows: results may be wrong without "
+      "any "
       "sign; lower it to {3:.6g} or less",
       near, waves.last, waves.of, waves.doubtful);
   EXPECT_EQ(warnings[0], expected);
-  expect_input_error([&] { make_model<2>(read(one_disc, {step(1.01 * waves.last)})); },
-                     {"scene.toml", "run.step = ", fmt::format("longer than {:.6g}, the last that {} allows", waves.last, waves.of),
-                      fmt::format("lower it to {:.6g} or less", waves.doubtful)});
+  expect_input_error(
+      [&] { make_model<2>(read(one_disc, {step(1.01 * waves.last)})); },
+      {"scene.toml", "run.step = ", fmt::format("longer than {:.6g}, the last that {} allows", waves.last, waves.of),
+       fmt::format("lower it to {:.6g} or less", waves.doubtful)});
   expect_input_error([] { make_model<2>(read(one_disc, {"run.step_factor=2.5"})); },
                      {"run.step_factor = 2.5", "lower it to 1"});
 }

@@ -36,8 +36,8 @@ TEST(SceneReader, ClassicMethodTurnsItsTermsOffAndSingleTermsCanBeChosen) {
 TEST(SceneReader, DefaultsInSpaceAreOthersThanInThePlane) {
   const Overrides in_space{"box.size=[1.0, 1.0, 1.0]"};
   EXPECT_EQ(read(plain_fluid, in_space).fluid.largest_no_slip, 8.0);
-  const std::string by_rule = std::string(plain_fluid).replace(plain_fluid.find("sound_speed = 1.0"), 17,
-                                                               "reference_velocity = 0.1");
+  const std::string by_rule =
+      std::string(plain_fluid).replace(plain_fluid.find("sound_speed = 1.0"), 17, "reference_velocity = 0.1");
   EXPECT_EQ(read(by_rule).fluid.sound_speed.factor, 10.0);
   EXPECT_EQ(read(by_rule, in_space).fluid.sound_speed.factor, 15.0);
   EXPECT_EQ(read(by_rule, {"fluid.sound_speed_factor=12"}).fluid.sound_speed.factor, 12.0);
@@ -184,9 +184,7 @@ const BadInput bad_inputs[] = {
      {"fluid.wave={amplitude=1, direction=\"z\", gradient=\"y\"}"},
      {"fluid.wave.direction", "no such axis"}},
     {"sample", {"output.sample=0"}, {"output.sample = 0", "at least 1"}},
-    {"shift_without_transport",
-     {"fluid.transport=false", "fluid.shift_rate=1"},
-     {"fluid.shift_rate", "remove it"}},
+    {"shift_without_transport", {"fluid.transport=false", "fluid.shift_rate=1"}, {"fluid.shift_rate", "remove it"}},
     {"vorticity_without_transport",
      {"fluid.method=classic", "fluid.shift_vorticity=1"},
      {"fluid.shift_vorticity", "remove it"}},

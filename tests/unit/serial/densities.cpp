@@ -104,9 +104,9 @@ template <int D, class Kernel>
 void expect_densities_in_both_precisions(const std::string& scene) {
   for (const bool single : {false, true}) {
     SCOPED_TRACE(::testing::Message() << D << "D, " << Kernel::name << (single ? ", single" : ", double"));
-    const Built<D> built(testing::replaced(scene, "viscosity = 0.5",
-                                           std::string("viscosity = 0.5\nkernel = \"") + Kernel::name +
-                                               (single ? "\"\nprecision = \"single\"" : "\"")));
+    const Built<D> built(testing::replaced(
+        scene, "viscosity = 0.5",
+        std::string("viscosity = 0.5\nkernel = \"") + Kernel::name + (single ? "\"\nprecision = \"single\"" : "\"")));
     for (const Neighbours neighbours : {Neighbours::cells, Neighbours::all_pairs}) {
       SerialEngine<D> engine(built.model, built.state(), neighbours);
       for (int step = 0; step < 3; ++step) engine.step();
@@ -120,7 +120,8 @@ void expect_densities_in_both_precisions(const std::string& scene) {
 }
 
 std::string two_discs() {
-  return head("[5.1, 4.8]", "0.3", "11.1111111111", "wave = { amplitude = 0.02, direction = \"x\", gradient = \"y\" }") +
+  return head("[5.1, 4.8]", "0.3", "11.1111111111",
+              "wave = { amplitude = 0.02, direction = \"x\", gradient = \"y\" }") +
          "[[body]]\nshape = \"disc\"\nradius = 0.8\ndensity = 20.0\npositions = [[1.5, 1.5], [3.2, 1.7], [0.2, 3.5]]\n"
          "angular_velocity = 0.05\n";
 }
@@ -148,7 +149,8 @@ TEST(Densities, are_those_of_a_double_loop_with_walls_and_with_own_images) {
 
 TEST(Densities, a_sample_changes_nothing) {
   const Built<2> built(two_discs());
-  SerialEngine<2> looked_at(built.model, built.state(), Neighbours::cells), alone(built.model, built.state(), Neighbours::cells);
+  SerialEngine<2> looked_at(built.model, built.state(), Neighbours::cells),
+      alone(built.model, built.state(), Neighbours::cells);
   for (int step = 0; step < 20; ++step) {
     looked_at.sample();
     looked_at.step();

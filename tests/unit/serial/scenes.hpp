@@ -182,7 +182,8 @@ solid = "balance"
 )";
 }
 
-/// The PPs of one box, repeated until they fill a larger one, in `larger`. Places are rounded to quanta of another size.
+/// The PPs of one box, repeated until they fill a larger one, in `larger`. Places are rounded to quanta of another
+/// size.
 template <int D>
 void repeat_fluid(const Built<D>& cell, const Built<D>& larger, const Region<D>& region, State<D>& state) {
   const FluidParticles<D> one = cell.state(Region<D>::whole_box()).fluid;
@@ -231,7 +232,7 @@ density = 20.0
 velocity = [0.03, -0.02, 0.01]
 array = {{ count = [{0}, {0}, {0}] }}
 )",
-                                                                                             along_each);
+                                                                                                along_each);
 }
 
 }  // namespace mappm::testing
