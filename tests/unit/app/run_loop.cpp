@@ -57,7 +57,7 @@ class ToyRun : public testing::Test {
     ToyEngine engine(std::move(begin.state));
     engine.bad_step = bad_step;
     engine.signal_step = signal_step;
-    const RunSetup<2> setup{scene_, model_, group_, options_, begin, "toy", {}};
+    const RunSetup<2> setup{scene_, model_, group_, options_, begin, limits_, "toy", {}};
     testing::internal::CaptureStdout();
     try {
       RunLoop<2, ToyEngine>(setup, engine).run();
@@ -79,6 +79,7 @@ class ToyRun : public testing::Test {
   testing_tools::ScratchFolder folder_;
   SingleGroup group_;
   Model<2> model_ = hand::model();
+  StepLimits limits_;
   Scene scene_;
   RunOptions options_;
 };
