@@ -10,8 +10,8 @@
 
 namespace mappm {
 
-/// Sums over the neighbours of one PP in the force pass, as integers: impulse (iota), shift (position quanta),
-/// vorticity (iota rcut). Of several PPs where the integers are lanes.
+/// Sums over the neighbours of one PP in the force pass, as integers: impulse (iota), shift (position quanta), vorticity
+/// (iota rcut). Of several PPs where the integers are lanes.
 template <int D, class Integer = std::int64_t>
 struct NeighbourSums {
   Vec<D, Integer> impulse, shift;
@@ -37,10 +37,10 @@ struct ParticleMotion {
   } beyond;
 };
 
-/// Share of the shift that the flow about a PP allows: min(1, (a h omega / c)^2), omega its vorticity. The shift moves
-/// PPs where their lattice is even, the pressure where the density is at rest. At a wall these are two places, and a
-/// fluid that shifts all the time never comes to rest there. Vorticity tells flow from the motion of single PPs to and
-/// fro, and by its square what the shift stirs up dies out.
+/// Share of the shift that the flow about a PP allows: min(1, (a h omega / c)^2), omega its vorticity. The shift moves PPs
+/// where their lattice is even, the pressure where the density is at rest. At a wall these are two places, and a fluid
+/// that shifts all the time never comes to rest there. Vorticity tells flow from the motion of single PPs to and fro, and
+/// by its square what the shift stirs up dies out.
 template <int D, class Real>
 MAPPM_INLINE Real shift_share(const AngularVec<D, Real>& vorticity, const ParticleStep<D>& step) {
   AngularVec<D, Real> root;

@@ -10,8 +10,8 @@ namespace mappm {
 
 /// One reason why a step can be too long. In one unit of time; infinite where the reason is absent.
 struct StepLimit {
-  std::string_view of;         // the reason: "sound", "viscosity", "added mass", "force" or "contact"
-  double usual = HUGE_VAL;     // the step at run.step_factor = 1
+  std::string_view of;     // the reason: "sound", "viscosity", "added mass", "force" or "contact"
+  double usual = HUGE_VAL;  // the step at run.step_factor = 1
   double doubtful = HUGE_VAL;  // beyond it a run is warned about
   double last = HUGE_VAL;      // beyond it a run is refused: a wave grows, or a motion is not resolved
 };
@@ -30,8 +30,9 @@ struct StepLimits {
   template <class Border>
   StepLimit first(Border border) const {
     const auto limits = all();
-    return *std::min_element(limits.begin(), limits.end(),
-                             [&](const StepLimit& a, const StepLimit& b) { return a.*border < b.*border; });
+    return *std::min_element(limits.begin(), limits.end(), [&](const StepLimit& a, const StepLimit& b) {
+      return a.*border < b.*border;
+    });
   }
 };
 
@@ -44,15 +45,13 @@ inline constexpr double margin_to_instability = 0.88;
 inline StepLimit wave_limit(double h, double c, double first, double inviscid) {
   const double usual = std::min(1.0, margin_to_instability * first);
   const bool by_shift = margin_to_instability * inviscid < 1.0;
-  return {usual == 1.0 ? "sound"
-          : by_shift   ? "shift"
-                       : "viscosity",
-          usual * h / c, margin_to_instability * first * h / c, first * h / c};
+  return {usual == 1.0 ? "sound" : by_shift ? "shift" : "viscosity", usual * h / c, margin_to_instability * first * h / c,
+          first * h / c};
 }
 
 /// The fluid drags along a body that is lighter than what it drags: dt < 2 M / Gamma, or the body is thrown to and fro,
-/// farther in each step. M: its mass, A: its surface, Gamma = A (a mu / h + b rho c) the friction of the FPs on PPs
-/// beside it. a and b are measured, on free discs and spheres of 1 to 0.001 times the density of the fluid at rest.
+/// farther in each step. M: its mass, A: its surface, Gamma = A (a mu / h + b rho c) the friction of the FPs on PPs beside
+/// it. a and b are measured, on free discs and spheres of 1 to 0.001 times the density of the fluid at rest.
 inline StepLimit light_solid_limit(double mass, double surface, double h, double c, double mu, double rho) {
   constexpr double a = 2.5, b = 0.083;
   const double last = 2.0 * mass / (surface * (a * mu / h + b * rho * c));
