@@ -57,7 +57,7 @@ class Parts {
 
   Census census() {
     Census found;
-    found.candidates = pass_.measured();
+    found.candidates = pass_.measured() * lane_count;  // the search measures to the box of a block
     for (const auto& lists : pass_.kept()) {
       found.blocks += lists.blocks().size();
       lists.for_each_chunk(numbers_, blocks_.data(), squares_, [&](auto centres, std::size_t base) {
