@@ -145,6 +145,19 @@ ContactLaw make_contact(const Scene& scene, const UnitScale& units) {
 double surface_of(const Ball<2>& ball) { return 2.0 * std::numbers::pi * ball.radius; }
 double surface_of(const Ball<3>& ball) { return 4.0 * std::numbers::pi * ball.radius * ball.radius; }
 
+/// At least 1 / I of the axis about which a body turns most easily: the largest sum of a row.
+template <int D>
+double largest_inverse_inertia(const Shape<D>& shape) {
+  constexpr int n = angular_components<D>;
+  double largest = 0.0;
+  for (int row = 0; row < n; ++row) {
+    double sum = 0.0;
+    for (int column = 0; column < n; ++column) sum += std::fabs(shape.inverse_inertia[n * row + column]);
+    largest = std::max(largest, sum);
+  }
+  return largest;
+}
+
 /// Of the free body that limits most, in scene units. viscosity: nu / (c h).
 template <int D>
 StepLimit light_limit(const Scene& scene, const Model<D>& model, double viscosity) {
@@ -153,10 +166,15 @@ StepLimit light_limit(const Scene& scene, const Model<D>& model, double viscosit
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (scene.bodies[i].motion != Motion::free) continue;
     const Shape<D>& shape = model.shapes[i];
-    double surface = 0.0;
-    for (const Ball<D>& ball : shape.balls) surface += surface_of(ball);
+    DraggedBody body{D, shape.mass};
+    double radius = 0.0;
+    for (const Ball<D>& ball : shape.balls) {
+      body.surface += surface_of(ball);
+      radius = std::max(radius, std::sqrt(dot(ball.offset, ball.offset)) + ball.radius);
+    }
+    if (shape.rotates) body.slowness = 1.0 / (largest_inverse_inertia(shape) * radius * radius);
     const StepLimit limit =
-        light_solid_limit(shape.mass, surface, h, 1.0, viscosity * h * model.rest_density, model.rest_density);
+        light_solid_limit(body, h, 1.0, viscosity * h * model.rest_density, model.rest_density);
     if (limit.last < shortest.last) shortest = limit;
   }
   const double time = model.units.time();
