@@ -216,19 +216,23 @@ template <int D>
 void fold_pair_law(const Scene& scene, const Lattice<D>& lattice, Model<D>& model) {
   double spacing[D];
   for (int axis = 0; axis < D; ++axis) spacing[axis] = lattice.spacing[axis];
+  double outer_moment = 0.0;
   with_pair_law(model, [&](auto kernel, auto) {
     using Kernel = decltype(kernel);
     const KernelScale scale = normalise<D, Kernel>(spacing);
     model.pair.force = scale.gradient * model.dt / velocity_quantum;
     model.pair.weight = scale.weight / density_quantum;
     model.self_density = round_to_quantum(Kernel::self_weight * scale.weight, density_quantum);
+    outer_moment = scale.outer_moment;
   });
   constexpr double h = 0.5;
   const double doubled_volume = 2.0 / model.rest_density;
   for (int axis = 0; axis < D; ++axis)
     model.pair.shift[axis] =
         scene.fluid.shift_rate * h / doubled_volume * velocity_quantum / model.pair.length[axis];
-  model.shift_vorticity = scene.fluid.shift_vorticity * h * velocity_quantum / (doubled_volume * model.dt);
+  const double of_rate = scene.fluid.shift_shear * h;
+  model.shift_shear =
+      of_rate * of_rate * velocity_quantum / (D * outer_moment * doubled_volume * model.dt);
   model.no_slip_largest = scene.fluid.largest_no_slip;
   const UnitScale& units = model.units;
   model.pair.viscosity =
