@@ -30,7 +30,7 @@ class FloatingPairs : public DoublePairs<D> {
       sums.impulse[axis] = to_fixed(given.impulse[axis]);
       sums.shift[axis] = to_fixed(given.shift[axis]);
     }
-    for (int k = 0; k < angular_components<D>; ++k) sums.vorticity[k] = to_fixed(given.vorticity[k]);
+    sums.shear = to_fixed(given.shear);
     return sums;
   }
   template <class Real>

@@ -30,8 +30,7 @@ MAPPM_INLINE PairResult<D, Sum> total(const PairResult<D, SumLanes<Sum>>& sums) 
     result.impulse[axis] = static_cast<Sum>(sum_of_lanes(sums.impulse[axis]));
     result.shift[axis] = static_cast<Sum>(sum_of_lanes(sums.shift[axis]));
   }
-  for (int k = 0; k < angular_components<D>; ++k)
-    result.vorticity[k] = static_cast<Sum>(sum_of_lanes(sums.vorticity[k]));
+  result.shear = static_cast<Sum>(sum_of_lanes(sums.shear));
   return result;
 }
 
@@ -75,10 +74,8 @@ MAPPM_INLINE void pair_block(const Numbers& numbers, PairBlock<D, Numbers>& bloc
     }
   }
   if constexpr (transport) {
-    for (int k = 0; k < angular_components<D>; ++k) {
-      add_to(block.vorticity[k], wrapped(given.vorticity[k]));
-      sums.vorticity[k] += wrapped(given.vorticity[k]);
-    }
+    add_to(block.shear, wrapped(given.shear));
+    sums.shear += wrapped(given.shear);
   }
 }
 
@@ -296,8 +293,7 @@ MAPPM_INLINE void sum_blocks(const Numbers& numbers, PairBlock<D, Numbers>* cons
           sums.impulse[axis] = excess;
           if constexpr (transport) sums.shift[axis] = excess;
         }
-        if constexpr (transport)
-          for (int k = 0; k < angular_components<D>; ++k) sums.vorticity[k] = excess;
+        if constexpr (transport) sums.shear = excess;
       },
       [&](std::uint32_t block, const typename Numbers::RealLanes& q) __attribute__((always_inline)) {
         detail::pair_block<Kernel, transport, lanes_first, Rounding>(numbers, blocks[block], centre, q, beta, sums);

@@ -20,7 +20,7 @@ struct alignas(sizeof(typename Numbers::RealLanes)) PairBlock {
   typename Numbers::Sum density[lanes];
   typename Numbers::Real v[D][lanes];
   typename Numbers::Real v2[lanes], pv2[lanes];
-  typename Numbers::Sum impulse[D][lanes], shift[D][lanes], vorticity[angular_components<D>][lanes];
+  typename Numbers::Sum impulse[D][lanes], shift[D][lanes], shear[lanes];
 };
 
 /// The one particle of a loop over blocks: a PP or an FP.
@@ -109,7 +109,7 @@ class PairBlocks {
       store_lanes(zero, &block.impulse[axis][lane]);
       store_lanes(zero, &block.shift[axis][lane]);
     }
-    for (int k = 0; k < angular_components<D>; ++k) store_lanes(zero, &block.vorticity[k][lane]);
+    store_lanes(zero, &block.shear[lane]);
     store_lanes(zero, &block.density[lane]);
   }
   /// Their volumes and pressures, by their densities (PPs per rcut^D).
@@ -134,7 +134,7 @@ class PairBlocks {
       std::ranges::fill(block.impulse[axis], 0);
       std::ranges::fill(block.shift[axis], 0);
     }
-    for (int k = 0; k < angular_components<D>; ++k) std::ranges::fill(block.vorticity[k], 0);
+    std::ranges::fill(block.shear, 0);
     std::ranges::fill(block.density, 0);
     result.contributions_.assign(1, 0);
     return result;
@@ -164,7 +164,7 @@ class PairBlocks {
       add_to(block.impulse[axis][lane], given.impulse[axis]);
       add_to(block.shift[axis][lane], given.shift[axis]);
     }
-    for (int k = 0; k < angular_components<D>; ++k) add_to(block.vorticity[k][lane], given.vorticity[k]);
+    add_to(block.shear[lane], given.shear);
   }
   MAPPM_INLINE void add_density(std::uint32_t place, Sum given) {
     add_to(blocks_[place / lanes].density[place % lanes], given);
@@ -213,8 +213,7 @@ class PairBlocks {
       sums.impulse[axis] = lanes_of<Sum>(load(&block.impulse[axis][lane]) + excess);
       sums.shift[axis] = lanes_of<Sum>(load(&block.shift[axis][lane]) + of_shift);
     }
-    for (int k = 0; k < angular_components<D>; ++k)
-      sums.vorticity[k] = lanes_of<Sum>(load(&block.vorticity[k][lane]) - of_shift);
+    sums.shear = lanes_of<Sum>(load(&block.shear[lane]) - of_shift);
     return sums;
   }
   Wrapping<Sum> excess_of(std::uint32_t block) const {

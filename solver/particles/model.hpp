@@ -59,7 +59,7 @@ struct Model {
   double self_density = 0.0;            // W(0), an integer multiple of the density quantum
   double no_slip_nearest = 0.0;         // dx / 4, rcut
   double no_slip_largest = 0.0;         // bound of beta
-  double shift_vorticity = 0.0;         // `ParticleStep::vorticity`
+  double shift_shear = 0.0;             // `ParticleStep::shear`
   double spacing = 0.0;                 // dx, rcut
   double dt = 0.0;                      // rcut / c
   std::uint64_t relax = 0;              // body forces act from this step on

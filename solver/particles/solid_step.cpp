@@ -169,7 +169,7 @@ ParticleStep<D> particle_step(const Model<D>& model, std::uint64_t step) {
     constants.largest_drift[axis] = largest_displacement / model.pair.length[axis];
   }
   constants.kick = model.terms.body_force && step >= model.relax ? model.fluid_kick : Vec<D, double>{};
-  constants.vorticity = model.shift_vorticity;
+  constants.shear = model.shift_shear;
   return constants;
 }
 

@@ -69,6 +69,8 @@ struct MpsWeight {
 struct KernelScale {
   double weight = 0.0;    // 1 / rcut^D
   double gradient = 0.0;  // 1 / rcut^(D+2)
+  /// (1/D) sum V G q^4 r^2 on the lattice, rcut^0: the share of the outer neighbours in what is 1 of all.
+  double outer_moment = 0.0;
 };
 
 /// Factors with which sums over a lattice of the given spacings (in units of rcut, mass 1 per node) are exact:
@@ -82,7 +84,7 @@ KernelScale normalise(const double (&spacing)[D]) {
     reach[axis] = static_cast<int>(1.0 / spacing[axis]) + 1;
   }
   double weight_sum = Kernel::self_weight;
-  double gradient_sum = 0.0;
+  double gradient_sum = 0.0, outer_sum = 0.0;
   for (int k = -reach[2]; k <= reach[2]; ++k)
     for (int j = -reach[1]; j <= reach[1]; ++j)
       for (int i = -reach[0]; i <= reach[0]; ++i) {
@@ -97,11 +99,13 @@ KernelScale normalise(const double (&spacing)[D]) {
         const double q = square_root(square);
         weight_sum += Kernel::weight(q);
         gradient_sum += square * Kernel::gradient(q);
+        outer_sum += square * square * square * Kernel::gradient(q);
       }
   const double number_density = 1.0 / volume;
   KernelScale scale;
   scale.weight = number_density / weight_sum;
   scale.gradient = D * number_density / gradient_sum;
+  scale.outer_moment = outer_sum / gradient_sum;
   return scale;
 }
 

@@ -54,7 +54,7 @@ class DoublePairs {
   /// Sums of one PP, or of lanes, in quanta of the state.
   template <class Integer>
   MAPPM_INLINE NeighbourSums<D, Integer> sums(const PairResult<D, Integer>& given) const {
-    return {given.impulse, given.shift, given.vorticity};
+    return {given.impulse, given.shift, given.shear};
   }
   /// A sum of densities, in quanta of the state.
   template <class Integer>
@@ -117,8 +117,7 @@ class SinglePairs {
       sums.impulse[axis] = widened(given.impulse[axis]) * Wide(static_cast<std::int64_t>(impulse_));
       sums.shift[axis] = widened(given.shift[axis]) * Wide(static_cast<std::int64_t>(place_[axis]));
     }
-    for (int k = 0; k < angular_components<D>; ++k)
-      sums.vorticity[k] = widened(given.vorticity[k]) * Wide(static_cast<std::int64_t>(impulse_));
+    sums.shear = widened(given.shear) * Wide(static_cast<std::int64_t>(impulse_));
     return sums;
   }
   template <class Integer>

@@ -10,12 +10,12 @@
 
 namespace mappm {
 
-/// Sums over the neighbours of one PP in the force pass, as integers: impulse (iota), shift (position quanta), vorticity
-/// (iota rcut). Of several PPs where the integers are lanes.
+/// Sums over the neighbours of one PP in the force pass, as integers: impulse (iota), shift (position quanta), shear
+/// (iota c). Of several PPs where the integers are lanes.
 template <int D, class Integer = std::int64_t>
 struct NeighbourSums {
   Vec<D, Integer> impulse, shift;
-  AngularVec<D, Integer> vorticity;
+  Integer shear{};
 };
 
 /// Constants of a step, the same for every PP.
@@ -24,7 +24,7 @@ struct ParticleStep {
   Vec<D, double> drift;          // dt / length of a position quantum: velocity (c) to displacement (quanta)
   Vec<D, double> kick;           // impulse of the body force (c, PP mass 1)
   Vec<D, double> largest_drift;  // `largest_displacement`, in quanta
-  double vorticity;              // a sum of it (iota rcut) to the root of the share of the shift that it allows
+  double shear;                  // a sum of it (iota c) to the share of the shift that it allows
 };
 
 /// A step of one PP, or of as many as there are lanes, and where it leaves its range (bool, or a mask of lanes).
@@ -37,15 +37,15 @@ struct ParticleMotion {
   } beyond;
 };
 
-/// Share of the shift that the flow about a PP allows: min(1, (a h omega / c)^2), omega its vorticity. The shift moves PPs
-/// where their lattice is even, the pressure where the density is at rest. At a wall these are two places, and a fluid
-/// that shifts all the time never comes to rest there. Vorticity tells flow from the motion of single PPs to and fro, and
-/// by its square what the shift stirs up dies out.
+/// Share of the shift that the shear of the fluid about a PP allows: min(1, (a h S / c)^2), where S^2 is the sum of the
+/// squares of the gradients of its velocity over D:
+///   S^2 = sum (V_i^2 + V_j^2) / (2 V_0) G q^4 v^2 / (D m),  m = (1 / D) sum V_0 G q^4 r^2 of the even lattice
+/// The shift moves PPs where their lattice is even, the pressure where the density is at rest. At a wall these are two
+/// places, and a fluid that shifts all the time never comes to rest there. In proportion to S the shift would keep alive
+/// the motion that allows it; by its square it dies out.
 template <int D, class Real>
-MAPPM_INLINE Real shift_share(const AngularVec<D, Real>& vorticity, const ParticleStep<D>& step) {
-  AngularVec<D, Real> root;
-  for (int k = 0; k < angular_components<D>; ++k) root[k] = vorticity[k] * step.vorticity;
-  return smaller(dot(root, root), constant<Real>(1.0));
+MAPPM_INLINE Real shift_share(const Real& shear, const ParticleStep<D>& step) {
+  return smaller(larger(shear * step.shear, constant<Real>(0.0)), constant<Real>(1.0));
 }
 
 /// v + impulse + kick, x + v dt + shift: exact but for the rounding of v dt and of the limited shift to quanta. Where
@@ -56,9 +56,7 @@ MAPPM_INLINE auto motion_of(const Vec<D, Real>& x, const Vec<D, Real>& v, const 
   constexpr double largest_impulse = 0x1p50, largest_velocity = exact_quanta * velocity_quantum;
   ParticleMotion<D, Real, decltype(x[0] < x[0])> motion;
   auto& beyond = motion.beyond;
-  AngularVec<D, Real> vorticity;
-  for (int k = 0; k < angular_components<D>; ++k) vorticity[k] = real_of(sums.vorticity[k]);
-  const Real share = shift_share<D>(vorticity, step);
+  const Real share = shift_share(real_of(sums.shear), step);
   for (int axis = 0; axis < D; ++axis) {
     const Real impulse = real_of(sums.impulse[axis]);
     const Real new_v = v[axis] + (impulse * velocity_quantum + step.kick[axis]);

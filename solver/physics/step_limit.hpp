@@ -49,12 +49,24 @@ inline StepLimit wave_limit(double h, double c, double first, double inviscid) {
           first * h / c};
 }
 
-/// The fluid drags along a body that is lighter than what it drags: dt < 2 M / Gamma, or the body is thrown to and fro,
-/// farther in each step. M: its mass, A: its surface, Gamma = A (a mu / h + b rho c) the friction of the FPs on PPs beside
-/// it. a and b are measured, on free discs and spheres of 1 to 0.001 times the density of the fluid at rest.
-inline StepLimit light_solid_limit(double mass, double surface, double h, double c, double mu, double rho) {
-  constexpr double a = 2.5, b = 0.083;
-  const double last = 2.0 * mass / (surface * (a * mu / h + b * rho * c));
+/// A free body as the fluid beside it drags it. In one system of units.
+struct DraggedBody {
+  int dimension = 2;
+  double mass = 0.0, surface = 0.0;  // M, A
+  double slowness = HUGE_VAL;        // I / R^2 with its moment of inertia I and radius R; infinite where it does not turn
+};
+
+/// The fluid drags along a body that is lighter than what it drags: beyond dt = 2 M / Gamma it is thrown to and fro,
+/// farther in each step, and beyond 2 I / (s R^2 Gamma_mu) it is turned so. Gamma = A (a mu / h + b rho c) is the friction
+/// of the FPs on PPs beside it, Gamma_mu its part by viscosity, s = 1 in the plane and 2 / 3 in space the share of the
+/// surface that moves as it turns. a and b are measured, on free discs and spheres of 1 to 0.001 times the density of the
+/// fluid at rest.
+inline StepLimit light_solid_limit(const DraggedBody& body, double h, double c, double mu, double rho) {
+  const double a = body.dimension == 2 ? 3.1 : 3.4, share = body.dimension == 2 ? 1.0 : 2.0 / 3.0;
+  constexpr double b = 0.083;
+  const double viscous = body.surface * a * mu / h;
+  const double last = std::min(2.0 * body.mass / (viscous + body.surface * b * rho * c),
+                               viscous > 0.0 ? 2.0 * body.slowness / (share * viscous) : HUGE_VAL);
   return {"added mass", 0.7 * last, margin_to_instability * last, last};
 }
 

@@ -145,6 +145,19 @@ ContactLaw make_contact(const Scene& scene, const UnitScale& units) {
 double surface_of(const Ball<2>& ball) { return 2.0 * std::numbers::pi * ball.radius; }
 double surface_of(const Ball<3>& ball) { return 4.0 * std::numbers::pi * ball.radius * ball.radius; }
 
+/// At least 1 / I of the axis about which a body turns most easily: the largest sum of a row.
+template <int D>
+double largest_inverse_inertia(const Shape<D>& shape) {
+  constexpr int n = angular_components<D>;
+  double largest = 0.0;
+  for (int row = 0; row < n; ++row) {
+    double sum = 0.0;
+    for (int column = 0; column < n; ++column) sum += std::fabs(shape.inverse_inertia[n * row + column]);
+    largest = std::max(largest, sum);
+  }
+  return largest;
+}
+
 /// Of the free body that limits most, in scene units. viscosity: nu / (c h).
 template <int D>
 StepLimit light_limit(const Scene& scene, const Model<D>& model, double viscosity) {
@@ -153,10 +166,15 @@ StepLimit light_limit(const Scene& scene, const Model<D>& model, double viscosit
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (scene.bodies[i].motion != Motion::free) continue;
     const Shape<D>& shape = model.shapes[i];
-    double surface = 0.0;
-    for (const Ball<D>& ball : shape.balls) surface += surface_of(ball);
+    DraggedBody body{D, shape.mass};
+    double radius = 0.0;
+    for (const Ball<D>& ball : shape.balls) {
+      body.surface += surface_of(ball);
+      radius = std::max(radius, std::sqrt(dot(ball.offset, ball.offset)) + ball.radius);
+    }
+    if (shape.rotates) body.slowness = 1.0 / (largest_inverse_inertia(shape) * radius * radius);
     const StepLimit limit =
-        light_solid_limit(shape.mass, surface, h, 1.0, viscosity * h * model.rest_density, model.rest_density);
+        light_solid_limit(body, h, 1.0, viscosity * h * model.rest_density, model.rest_density);
     if (limit.last < shortest.last) shortest = limit;
   }
   const double time = model.units.time();
@@ -198,19 +216,23 @@ template <int D>
 void fold_pair_law(const Scene& scene, const Lattice<D>& lattice, Model<D>& model) {
   double spacing[D];
   for (int axis = 0; axis < D; ++axis) spacing[axis] = lattice.spacing[axis];
+  double outer_moment = 0.0;
   with_pair_law(model, [&](auto kernel, auto) {
     using Kernel = decltype(kernel);
     const KernelScale scale = normalise<D, Kernel>(spacing);
     model.pair.force = scale.gradient * model.dt / velocity_quantum;
     model.pair.weight = scale.weight / density_quantum;
     model.self_density = round_to_quantum(Kernel::self_weight * scale.weight, density_quantum);
+    outer_moment = scale.outer_moment;
   });
   constexpr double h = 0.5;
   const double doubled_volume = 2.0 / model.rest_density;
   for (int axis = 0; axis < D; ++axis)
     model.pair.shift[axis] =
         scene.fluid.shift_rate * h / doubled_volume * velocity_quantum / model.pair.length[axis];
-  model.shift_vorticity = scene.fluid.shift_vorticity * h * velocity_quantum / (doubled_volume * model.dt);
+  const double of_rate = scene.fluid.shift_shear * h;
+  model.shift_shear =
+      of_rate * of_rate * velocity_quantum / (D * outer_moment * doubled_volume * model.dt);
   model.no_slip_largest = scene.fluid.largest_no_slip;
   const UnitScale& units = model.units;
   model.pair.viscosity =

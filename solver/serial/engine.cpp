@@ -237,7 +237,7 @@ void SerialEngine<D>::sum_over_fluid(const Numbers& numbers, std::size_t i) {
   for_each_fluid_partner<Kernel, transport>(numbers, i, [&](std::size_t, const NeighbourSums<D>& given) {
     sums.impulse += given.impulse;
     sums.shift += given.shift;
-    sums.vorticity += given.vorticity;
+    sums.shear += given.shear;
   });
 }
 
@@ -248,7 +248,7 @@ void SerialEngine<D>::sum_over_frozen(const Numbers& numbers, std::size_t i) {
   for_each_frozen_partner<Kernel, transport>(numbers, i, [&](std::size_t k, const NeighbourSums<D>& given) {
     sums.impulse += given.impulse;
     sums.shift += given.shift;
-    sums.vorticity += given.vorticity;
+    sums.shear += given.shear;
     frozen_sums_[k].impulse -= given.impulse;
   });
 }

@@ -143,7 +143,7 @@ void expect_blindness() {
     for (std::size_t i = 0; i < clean.forces.size(); ++i) {
       EXPECT_EQ(clean.forces[i].impulse, dirty.forces[i].impulse) << "particle " << i;
       EXPECT_EQ(clean.forces[i].shift, dirty.forces[i].shift) << "particle " << i;
-      EXPECT_EQ(clean.forces[i].vorticity, dirty.forces[i].vorticity) << "particle " << i;
+      EXPECT_EQ(clean.forces[i].shear, dirty.forces[i].shear) << "particle " << i;
     }
   }
 }
@@ -233,7 +233,7 @@ class AllPairs {
       const auto given = of_pair(point(i, density), point(j, density), Real(1));
       sums.impulse += given.impulse;
       sums.shift += given.shift;
-      sums.vorticity += given.vorticity;
+      sums.shear += given.shear;
     }
     return sums;
   }
@@ -347,7 +347,7 @@ void expect_sums_of_all_pairs(const Case& test) {
     const NeighbourSums<D> sums = all.forces(i, density), found = pass.sums(pass.place(i));
     ASSERT_EQ(found.impulse, sums.impulse) << "particle " << i;
     ASSERT_EQ(found.shift, sums.shift) << "particle " << i;
-    ASSERT_EQ(found.vorticity, sums.vorticity) << "particle " << i;
+    ASSERT_EQ(found.shear, sums.shear) << "particle " << i;
     pairs += all.partners(i);
   }
   EXPECT_GE(pairs, test.least_pairs);
@@ -492,7 +492,7 @@ void expect_frozen_sums_of_all_pairs(const std::string& scene, int threads) {
       const NeighbourSums<D> given = all.of_pair(all.point(i, density), point_of_frozen(frozen[k]), beta);
       on_fluid[i].impulse += given.impulse;
       on_fluid[i].shift += given.shift;
-      on_fluid[i].vorticity += given.vorticity;
+      on_fluid[i].shear += given.shear;
       opposite.impulse -= given.impulse;
     }
     if (region.contains(frozen[k].place.x)) {
@@ -504,7 +504,7 @@ void expect_frozen_sums_of_all_pairs(const std::string& scene, int threads) {
     const NeighbourSums<D> sums_of_fluid = all.forces(i, density), found = pass.sums(pass.place(i));
     ASSERT_EQ(found.impulse, sums_of_fluid.impulse + on_fluid[i].impulse) << "particle " << i;
     ASSERT_EQ(found.shift, sums_of_fluid.shift + on_fluid[i].shift) << "particle " << i;
-    ASSERT_EQ(found.vorticity, sums_of_fluid.vorticity + on_fluid[i].vorticity) << "particle " << i;
+    ASSERT_EQ(found.shear, sums_of_fluid.shear + on_fluid[i].shear) << "particle " << i;
   }
 }
 

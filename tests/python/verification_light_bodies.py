@@ -68,9 +68,6 @@ def test_a_light_disc_is_calm_where_viscosity_is_low(tmp_path: Path, density: fl
     assert_calm(tmp_path, 2, density, 0.02, True)
 
 
-# Turning is unstable from .43 of `last` on (a sphere: .46): the inertia of a disc is half that of its mass at the rim,
-# and friction there is the same. `light_solid_limit` knows of motion along a line alone.
-@pytest.mark.xfail(strict=True, raises=SolverError, reason="the limit of light solids leaves out rotation")
 @pytest.mark.parametrize(("dimension", "density"), [(2, 0.1), (2, 0.01), (2, 0.001), (3, 0.01)])
 def test_a_light_body_is_calm_where_viscosity_is_high(tmp_path: Path, dimension: int, density: float) -> None:
     assert_calm(tmp_path, dimension, density, 0.5, True)

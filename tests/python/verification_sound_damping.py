@@ -27,6 +27,6 @@ def test_sound_is_damped_by_viscosity(tmp_path: Path, method: str, factor: float
 
 def test_the_transport_velocity_leaves_sound_alone(tmp_path: Path) -> None:
     """Nothing turns in a plane wave, so that there is no shift, however strong it would be where the fluid turns."""
-    weak, strong = (damping(tmp_path / rate, 5e-4, f"fluid.shift_rate={rate}", "fluid.shift_vorticity=1e6", "run.step_factor=0.5")
+    weak, strong = (damping(tmp_path / rate, 5e-4, f"fluid.shift_rate={rate}", "fluid.shift_shear=1e6", "run.step_factor=0.5")
                     for rate in ("0.1", "0.5"))
     assert weak == pytest.approx(strong, abs=1e-6)

@@ -12,9 +12,9 @@ namespace {
 
 StepTrace<2> hand_trace() {
   StepTrace<2> trace{36, 1042, {}};
-  trace.partners.push_back({true, 3, 17, {{{5, -6}}, {{1, 2}}, {{11}}}, 7});
-  trace.partners.push_back({false, 2077, 0, {{{124, 0}}, {{3, 4}}, {{12}}}, 9});
-  trace.partners.push_back({false, 90, 0, {{{-1, -2}}, {{-3, -4}}, {{13}}}, 8});
+  trace.partners.push_back({true, 3, 17, {{{5, -6}}, {{1, 2}}, 11}, 7});
+  trace.partners.push_back({false, 2077, 0, {{{124, 0}}, {{3, 4}}, 12}, 9});
+  trace.partners.push_back({false, 90, 0, {{{-1, -2}}, {{-3, -4}}, 13}, 8});
   return trace;
 }
 

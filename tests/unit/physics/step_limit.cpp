@@ -24,12 +24,22 @@ TEST(WaveLimit, keeps_its_distance_from_instability_and_names_its_cause) {
 }
 
 TEST(LightSolidLimit, by_hand) {
-  // Gamma = 4 (2.5 * 0.25 / 0.5 + 0.083 * 10 * 2) = 4 (1.25 + 1.66) = 11.64; 2 M / Gamma
-  const StepLimit limit = light_solid_limit(5.82, 4.0, 0.5, 2.0, 0.25, 10.0);
+  // Gamma = 4 (3.1 * 0.25 / 0.5 + 0.083 * 10 * 2) = 4 (1.55 + 1.66) = 12.84; 2 M / Gamma
+  const StepLimit limit = light_solid_limit({2, 6.42, 4.0}, 0.5, 2.0, 0.25, 10.0);
   EXPECT_EQ(limit.of, "added mass");
   EXPECT_DOUBLE_EQ(limit.last, 1.0);
   EXPECT_DOUBLE_EQ(limit.usual, 0.7);
   EXPECT_DOUBLE_EQ(limit.doubtful, 0.88);
+}
+
+TEST(LightSolidLimit, a_body_that_turns_by_hand) {
+  // 2 I / (R^2 Gamma_mu), Gamma_mu = 4 * 1.55 = 6.2; in space Gamma_mu = 4 * 3.4 / 2 = 6.8, of which 2 / 3 count
+  EXPECT_DOUBLE_EQ(light_solid_limit({2, 6.42, 4.0, 1.55}, 0.5, 2.0, 0.25, 10.0).last, 0.5);
+  EXPECT_DOUBLE_EQ(light_solid_limit({3, 6.42, 4.0, 1.7}, 0.5, 2.0, 0.25, 10.0).last, 0.75);
+}
+
+TEST(LightSolidLimit, without_viscosity_turning_does_not_limit) {
+  EXPECT_DOUBLE_EQ(light_solid_limit({2, 3.32, 4.0, 0.01}, 0.5, 2.0, 0.0, 10.0).last, 1.0);  // Gamma = 4 * 1.66
 }
 
 TEST(ForceLimit, by_hand) {

@@ -15,7 +15,7 @@ TEST(SceneReader, FillsDefaults) {
   EXPECT_EQ(scene.fluid.no_slip, NoSlip::extrapolated);
   EXPECT_EQ(scene.fluid.kernel, KernelKind::wendland_c2);
   EXPECT_EQ(scene.fluid.shift_rate, 0.5);
-  EXPECT_EQ(scene.fluid.shift_vorticity, 60.0);
+  EXPECT_EQ(scene.fluid.shift_shear, 45.0);
   EXPECT_EQ(scene.fluid.largest_no_slip, 4.0);
   EXPECT_EQ(scene.fluid.precision, Precision::full);
   EXPECT_EQ(scene.run.step_factor, 1.0);
@@ -45,9 +45,9 @@ TEST(SceneReader, DefaultsInSpaceAreOthersThanInThePlane) {
 
 TEST(SceneReader, ReadsTheShiftAndTheBoundOfTheNoSlipFactor) {
   const FluidScene fluid =
-      read(plain_fluid, {"fluid.shift_rate=0.25", "fluid.shift_vorticity=30", "fluid.largest_no_slip=1"}).fluid;
+      read(plain_fluid, {"fluid.shift_rate=0.25", "fluid.shift_shear=30", "fluid.largest_no_slip=1"}).fluid;
   EXPECT_EQ(fluid.shift_rate, 0.25);
-  EXPECT_EQ(fluid.shift_vorticity, 30.0);
+  EXPECT_EQ(fluid.shift_shear, 30.0);
   EXPECT_EQ(fluid.largest_no_slip, 1.0);
 }
 
@@ -184,10 +184,12 @@ const BadInput bad_inputs[] = {
      {"fluid.wave={amplitude=1, direction=\"z\", gradient=\"y\"}"},
      {"fluid.wave.direction", "no such axis"}},
     {"sample", {"output.sample=0"}, {"output.sample = 0", "at least 1"}},
-    {"shift_without_transport", {"fluid.transport=false", "fluid.shift_rate=1"}, {"fluid.shift_rate", "remove it"}},
-    {"vorticity_without_transport",
-     {"fluid.method=classic", "fluid.shift_vorticity=1"},
-     {"fluid.shift_vorticity", "remove it"}},
+    {"shift_without_transport",
+     {"fluid.transport=false", "fluid.shift_rate=1"},
+     {"fluid.shift_rate", "remove it"}},
+    {"shear_without_transport",
+     {"fluid.method=classic", "fluid.shift_shear=1"},
+     {"fluid.shift_shear", "remove it"}},
     {"zero_shift", {"fluid.shift_rate=0"}, {"fluid.shift_rate = 0", "must be positive"}},
     {"shift_of_old", {"fluid.shift_pressure=1"}, {"fluid.shift_pressure = 1", "unknown key"}},
     {"bound_below_a_plain_wall", {"fluid.largest_no_slip=0.5"}, {"fluid.largest_no_slip = 0.5", "at least 1"}},
