@@ -41,8 +41,8 @@ struct ParticleMotion {
 /// squares of the gradients of its velocity over D:
 ///   S^2 = sum (V_i^2 + V_j^2) / (2 V_0) G q^4 v^2 / (D m),  m = (1 / D) sum V_0 G q^4 r^2 of the even lattice
 /// The shift moves PPs where their lattice is even, the pressure where the density is at rest. At a wall these are two
-/// places, and a fluid that shifts all the time never comes to rest there. In proportion to S the shift would keep alive
-/// the motion that allows it; by its square it dies out.
+/// places, and a fluid that shifts all the time never comes to rest there. In proportion to S the shift would keep
+/// alive the motion that allows it; by its square it dies out.
 template <int D, class Real>
 MAPPM_INLINE Real shift_share(const Real& shear, const ParticleStep<D>& step) {
   return smaller(larger(shear * step.shear, constant<Real>(0.0)), constant<Real>(1.0));

@@ -10,8 +10,8 @@ namespace mappm {
 
 /// One reason why a step can be too long. In one unit of time; infinite where the reason is absent.
 struct StepLimit {
-  std::string_view of;     // the reason: "sound", "viscosity", "added mass", "force" or "contact"
-  double usual = HUGE_VAL;  // the step at run.step_factor = 1
+  std::string_view of;         // the reason: "sound", "viscosity", "added mass", "force" or "contact"
+  double usual = HUGE_VAL;     // the step at run.step_factor = 1
   double doubtful = HUGE_VAL;  // beyond it a run is warned about
   double last = HUGE_VAL;      // beyond it a run is refused: a wave grows, or a motion is not resolved
 };
@@ -30,9 +30,8 @@ struct StepLimits {
   template <class Border>
   StepLimit first(Border border) const {
     const auto limits = all();
-    return *std::min_element(limits.begin(), limits.end(), [&](const StepLimit& a, const StepLimit& b) {
-      return a.*border < b.*border;
-    });
+    return *std::min_element(limits.begin(), limits.end(),
+                             [&](const StepLimit& a, const StepLimit& b) { return a.*border < b.*border; });
   }
 };
 
@@ -45,22 +44,24 @@ inline constexpr double margin_to_instability = 0.88;
 inline StepLimit wave_limit(double h, double c, double first, double inviscid) {
   const double usual = std::min(1.0, margin_to_instability * first);
   const bool by_shift = margin_to_instability * inviscid < 1.0;
-  return {usual == 1.0 ? "sound" : by_shift ? "shift" : "viscosity", usual * h / c, margin_to_instability * first * h / c,
-          first * h / c};
+  return {usual == 1.0 ? "sound"
+          : by_shift   ? "shift"
+                       : "viscosity",
+          usual * h / c, margin_to_instability * first * h / c, first * h / c};
 }
 
 /// A free body as the fluid beside it drags it. In one system of units.
 struct DraggedBody {
   int dimension = 2;
   double mass = 0.0, surface = 0.0;  // M, A
-  double slowness = HUGE_VAL;        // I / R^2 with its moment of inertia I and radius R; infinite where it does not turn
+  double slowness = HUGE_VAL;  // I / R^2 with its moment of inertia I and radius R; infinite where it does not turn
 };
 
 /// The fluid drags along a body that is lighter than what it drags: beyond dt = 2 M / Gamma it is thrown to and fro,
-/// farther in each step, and beyond 2 I / (s R^2 Gamma_mu) it is turned so. Gamma = A (a mu / h + b rho c) is the friction
-/// of the FPs on PPs beside it, Gamma_mu its part by viscosity, s = 1 in the plane and 2 / 3 in space the share of the
-/// surface that moves as it turns. a and b are measured, on free discs and spheres of 1 to 0.001 times the density of the
-/// fluid at rest.
+/// farther in each step, and beyond 2 I / (s R^2 Gamma_mu) it is turned so. Gamma = A (a mu / h + b rho c) is the
+/// friction of the FPs on PPs beside it, Gamma_mu its part by viscosity, s = 1 in the plane and 2 / 3 in space the
+/// share of the surface that moves as it turns. a and b are measured, on free discs and spheres of 1 to 0.001 times the
+/// density of the fluid at rest.
 inline StepLimit light_solid_limit(const DraggedBody& body, double h, double c, double mu, double rho) {
   const double a = body.dimension == 2 ? 3.1 : 3.4, share = body.dimension == 2 ? 1.0 : 2.0 / 3.0;
   constexpr double b = 0.083;

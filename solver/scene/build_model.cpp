@@ -173,8 +173,7 @@ StepLimit light_limit(const Scene& scene, const Model<D>& model, double viscosit
       radius = std::max(radius, std::sqrt(dot(ball.offset, ball.offset)) + ball.radius);
     }
     if (shape.rotates) body.slowness = 1.0 / (largest_inverse_inertia(shape) * radius * radius);
-    const StepLimit limit =
-        light_solid_limit(body, h, 1.0, viscosity * h * model.rest_density, model.rest_density);
+    const StepLimit limit = light_solid_limit(body, h, 1.0, viscosity * h * model.rest_density, model.rest_density);
     if (limit.last < shortest.last) shortest = limit;
   }
   const double time = model.units.time();
@@ -200,18 +199,17 @@ StepLimits find_limits(const Scene& scene, const Model<D>& model, const Matter& 
   limits.contact = contact_limit(duration);
   if (!model.terms.fluid) return limits;
   const double reach = 1.0 / model.spacing, shift_rate = model.terms.transport ? scene.fluid.shift_rate : 0.0;
-  const double at_walls =
-      model.terms.solids ? wall_friction<D>(model.kernel, reach, scene.fluid.largest_no_slip) : 1.0;
+  const double at_walls = model.terms.solids ? wall_friction<D>(model.kernel, reach, scene.fluid.largest_no_slip) : 1.0;
   const double viscosity = scene.fluid.viscosity / scene.fluid.density / (model.units.velocity * h);
-  limits.waves = wave_limit(h, model.units.velocity,
-                            first_instability<D>(model.kernel, reach, at_walls * viscosity, shift_rate),
-                            first_instability<D>(model.kernel, reach, 0.0, shift_rate));
+  limits.waves =
+      wave_limit(h, model.units.velocity, first_instability<D>(model.kernel, reach, at_walls * viscosity, shift_rate),
+                 first_instability<D>(model.kernel, reach, 0.0, shift_rate));
   limits.light_solids = light_limit(scene, model, viscosity);
   return limits;
 }
 
-/// Constants of the pair law; they carry the step. shift: u dt with u = kappa c h (V_i^2 + V_j^2) / (2 V_0) G r, of which
-/// the law has G dt / iota already.
+/// Constants of the pair law; they carry the step. shift: u dt with u = kappa c h (V_i^2 + V_j^2) / (2 V_0) G r, of
+/// which the law has G dt / iota already.
 template <int D>
 void fold_pair_law(const Scene& scene, const Lattice<D>& lattice, Model<D>& model) {
   double spacing[D];
@@ -228,11 +226,9 @@ void fold_pair_law(const Scene& scene, const Lattice<D>& lattice, Model<D>& mode
   constexpr double h = 0.5;
   const double doubled_volume = 2.0 / model.rest_density;
   for (int axis = 0; axis < D; ++axis)
-    model.pair.shift[axis] =
-        scene.fluid.shift_rate * h / doubled_volume * velocity_quantum / model.pair.length[axis];
+    model.pair.shift[axis] = scene.fluid.shift_rate * h / doubled_volume * velocity_quantum / model.pair.length[axis];
   const double of_rate = scene.fluid.shift_shear * h;
-  model.shift_shear =
-      of_rate * of_rate * velocity_quantum / (D * outer_moment * doubled_volume * model.dt);
+  model.shift_shear = of_rate * of_rate * velocity_quantum / (D * outer_moment * doubled_volume * model.dt);
   model.no_slip_largest = scene.fluid.largest_no_slip;
   const UnitScale& units = model.units;
   model.pair.viscosity =

@@ -62,8 +62,8 @@ void expect_near_double(const Fluid& fluid) {
                   static_cast<double>(exact.shift[axis]) * law.length[axis], 5e-9);
     }
     // q^4 v^2 is far below what friction gives.
-    EXPECT_NEAR(static_cast<double>(coarse.shear) * velocity_quantum, static_cast<double>(exact.shear) * velocity_quantum,
-                0x1p-27 + 2e-9);
+    EXPECT_NEAR(static_cast<double>(coarse.shear) * velocity_quantum,
+                static_cast<double>(exact.shear) * velocity_quantum, 0x1p-27 + 2e-9);
     EXPECT_NEAR(static_cast<double>(density_given(single, i, j)) * density_quantum,
                 static_cast<double>(density_given(full, i, j)) * density_quantum, 1e-7 * rest_density);
   }

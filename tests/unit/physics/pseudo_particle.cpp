@@ -46,11 +46,11 @@ TEST(PseudoParticle, shifts_by_the_share_that_its_shear_allows) {
     EXPECT_EQ(advance(p.x, p.v, sums, make_step()), RangeFault::none);
     return p.x - Vec<2, double>{{1000.0 + 0x1p19, 5.0 - 0x1p11}};
   };
-  EXPECT_EQ(shifted(0), (Vec<2, double>{}));                                 // at rest there is none
-  EXPECT_EQ(shifted(1 << 18), (Vec<2, double>{{250.0, -1000.0}}));      // a quarter
-  EXPECT_EQ(shifted(1 << 20), (Vec<2, double>{{1000.0, -4000.0}}));     // all of it
-  EXPECT_EQ(shifted(5 << 20), (Vec<2, double>{{1000.0, -4000.0}}));     // and never more
-  EXPECT_EQ(shifted((1 << 20) / 10000), (Vec<2, double>{}));            // 1e-4 of it, rounded to quanta
+  EXPECT_EQ(shifted(0), (Vec<2, double>{}));                         // at rest there is none
+  EXPECT_EQ(shifted(1 << 18), (Vec<2, double>{{250.0, -1000.0}}));   // a quarter
+  EXPECT_EQ(shifted(1 << 20), (Vec<2, double>{{1000.0, -4000.0}}));  // all of it
+  EXPECT_EQ(shifted(5 << 20), (Vec<2, double>{{1000.0, -4000.0}}));  // and never more
+  EXPECT_EQ(shifted((1 << 20) / 10000), (Vec<2, double>{}));         // 1e-4 of it, rounded to quanta
 }
 
 TEST(ShiftShare, by_hand) {

@@ -55,16 +55,16 @@ TEST(SceneModel, StepFollowsTheShiftAndTheWalls) {
 }
 
 TEST(SceneModel, ALightSolidLimitsTheStep) {
-  // As heavy as 1/200 of the fluid: M = 0.005 * 16 pi, A = 2 pi; Gamma / A = 3.1 * 0.64 / 0.5 + 0.083 * 16. It turns, with
-  // I = M / 2, sooner than it is thrown: 2 I / (A 3.968).
+  // As heavy as 1/200 of the fluid: M = 0.005 * 16 pi, A = 2 pi; Gamma / A = 3.1 * 0.64 / 0.5 + 0.083 * 16. It turns,
+  // with I = M / 2, sooner than it is thrown: 2 I / (A 3.968).
   const BuiltModel<2> light = make_model<2>(read(one_disc, {"body.0.density=0.015"}));
   const double last = 0.04 / 3.968, unturned = 2.0 * 0.04 / (3.968 + 1.328);
   EXPECT_EQ(light.limits.ruling().of, "added mass");
   EXPECT_NEAR(light.model.dt, 0.7 * last, 1e-14);
   EXPECT_NEAR(light.limits.light_solids.last, 0.05 * last, 1e-14) << "in units of the scene";
   EXPECT_LT(last, unturned);
-  const BuiltModel<2> held = make_model<2>(
-      read(one_disc, {"body.0.density=0.015", "body.0.motion=moving", "body.0.angular_velocity=0.0"}));
+  const BuiltModel<2> held =
+      make_model<2>(read(one_disc, {"body.0.density=0.015", "body.0.motion=moving", "body.0.angular_velocity=0.0"}));
   EXPECT_EQ(held.limits.light_solids.last, HUGE_VAL) << "what is held cannot be thrown";
 }
 
@@ -140,13 +140,21 @@ double shear_on_lattice(const Model<D>& model, Velocity&& velocity) {
   return particle_step(model, 0).shear / (a * h * a * h) * sum;
 }
 
-// D S^2 is the sum of the squares of the gradients, whether the fluid turns, is sheared or strained. Roundings: some fifty of
-// a quantum of iota / (2 V_0 D m dt) < 1e-12 each way, and of the terms.
+// D S^2 is the sum of the squares of the gradients, whether the fluid turns, is sheared or strained. Roundings: some
+// fifty of a quantum of iota / (2 V_0 D m dt) < 1e-12 each way, and of the terms.
 TEST(SceneModel, ShearIsThatOfTurningAndStrain) {
   const Model<2> plane = make_model<2>(read(plain_fluid)).model;
   using Plane = Vec<2, double>;
-  EXPECT_NEAR(shear_on_lattice<2>(plane, [](const Plane& r) { return Plane{{-0.03 * r[1], 0.03 * r[0]}}; }), 9e-4, 1e-11);
-  EXPECT_NEAR(shear_on_lattice<2>(plane, [](const Plane& r) { return Plane{{0.03 * r[0], -0.03 * r[1]}}; }), 9e-4, 1e-11);
+  EXPECT_NEAR(shear_on_lattice<2>(plane,
+                                  [](const Plane& r) {
+                                    return Plane{{-0.03 * r[1], 0.03 * r[0]}};
+                                  }),
+              9e-4, 1e-11);
+  EXPECT_NEAR(shear_on_lattice<2>(plane,
+                                  [](const Plane& r) {
+                                    return Plane{{0.03 * r[0], -0.03 * r[1]}};
+                                  }),
+              9e-4, 1e-11);
   EXPECT_NEAR(shear_on_lattice<2>(plane, [](const Plane& r) { return Plane{{0.03 * r[1], 0.0}}; }), 4.5e-4, 1e-11);
   const Model<3> space = make_model<3>(read(plain_fluid, {"box.size=[1.0, 1.0, 1.0]"})).model;
   using Space = Vec<3, double>;
