@@ -192,7 +192,7 @@ TEST(ParallelEngine, processes_make_their_lists_in_the_same_steps) {
   const Domains<2> domains = make_domains<2>(built.model, world().size(), "");
   const auto set_in_motion = [&](State<2>&& state) {
     for (std::size_t i = 0; i < state.fluid.size(); ++i) {  // each by itself would keep its lists for its own time
-      const double v = 0.0125 / (1.0 + 0.2 * domains.owner(state.fluid.position(i)));  // c: stays of 8 steps and more
+      const double v = 0.0125 / (1.0 + 0.2 * domains.owner(state.fluid.position(i)));  // c: stays last for some steps
       state.fluid.v(0)[i] = std::nearbyint(v / velocity_quantum) * velocity_quantum;
     }
     return std::move(state);
