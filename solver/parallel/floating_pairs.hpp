@@ -31,6 +31,7 @@ class FloatingPairs : public DoublePairs<D> {
       sums.shift[axis] = to_fixed(given.shift[axis]);
     }
     sums.shear = to_fixed(given.shear);
+    sums.agitation = to_fixed(given.agitation);
     return sums;
   }
   template <class Real>

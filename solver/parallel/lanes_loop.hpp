@@ -31,6 +31,7 @@ MAPPM_INLINE PairResult<D, Sum> total(const PairResult<D, SumLanes<Sum>>& sums) 
     result.shift[axis] = static_cast<Sum>(sum_of_lanes(sums.shift[axis]));
   }
   result.shear = static_cast<Sum>(sum_of_lanes(sums.shear));
+  result.agitation = static_cast<Sum>(sum_of_lanes(sums.agitation));
   return result;
 }
 
@@ -76,6 +77,8 @@ MAPPM_INLINE void pair_block(const Numbers& numbers, PairBlock<D, Numbers>& bloc
   if constexpr (transport) {
     add_to(block.shear, wrapped(given.shear));
     sums.shear += wrapped(given.shear);
+    add_to(block.agitation, wrapped(given.agitation));
+    sums.agitation += wrapped(given.agitation);
   }
 }
 
@@ -293,7 +296,7 @@ MAPPM_INLINE void sum_blocks(const Numbers& numbers, PairBlock<D, Numbers>* cons
           sums.impulse[axis] = excess;
           if constexpr (transport) sums.shift[axis] = excess;
         }
-        if constexpr (transport) sums.shear = excess;
+        if constexpr (transport) sums.shear = sums.agitation = excess;
       },
       [&](std::uint32_t block, const typename Numbers::RealLanes& q) __attribute__((always_inline)) {
         detail::pair_block<Kernel, transport, lanes_first, Rounding>(numbers, blocks[block], centre, q, beta, sums);

@@ -20,7 +20,7 @@ struct alignas(sizeof(typename Numbers::RealLanes)) PairBlock {
   typename Numbers::Sum density[lanes];
   typename Numbers::Real v[D][lanes];
   typename Numbers::Real v2[lanes], pv2[lanes];
-  typename Numbers::Sum impulse[D][lanes], shift[D][lanes], shear[lanes];
+  typename Numbers::Sum impulse[D][lanes], shift[D][lanes], shear[lanes], agitation[lanes];
 };
 
 /// The one particle of a loop over blocks: a PP or an FP.
@@ -110,6 +110,7 @@ class PairBlocks {
       store_lanes(zero, &block.shift[axis][lane]);
     }
     store_lanes(zero, &block.shear[lane]);
+    store_lanes(zero, &block.agitation[lane]);
     store_lanes(zero, &block.density[lane]);
   }
   /// Their volumes and pressures, by their densities (PPs per rcut^D).
@@ -135,6 +136,7 @@ class PairBlocks {
       std::ranges::fill(block.shift[axis], 0);
     }
     std::ranges::fill(block.shear, 0);
+    std::ranges::fill(block.agitation, 0);
     std::ranges::fill(block.density, 0);
     result.contributions_.assign(1, 0);
     return result;
@@ -165,6 +167,7 @@ class PairBlocks {
       add_to(block.shift[axis][lane], given.shift[axis]);
     }
     add_to(block.shear[lane], given.shear);
+    add_to(block.agitation[lane], given.agitation);
   }
   MAPPM_INLINE void add_density(std::uint32_t place, Sum given) {
     add_to(blocks_[place / lanes].density[place % lanes], given);
@@ -214,6 +217,7 @@ class PairBlocks {
       sums.shift[axis] = lanes_of<Sum>(load(&block.shift[axis][lane]) + of_shift);
     }
     sums.shear = lanes_of<Sum>(load(&block.shear[lane]) - of_shift);
+    sums.agitation = lanes_of<Sum>(load(&block.agitation[lane]) - of_shift);
     return sums;
   }
   Wrapping<Sum> excess_of(std::uint32_t block) const {

@@ -60,6 +60,7 @@ struct Model {
   double no_slip_nearest = 0.0;         // dx / 4, rcut
   double no_slip_largest = 0.0;         // bound of beta
   double shift_shear = 0.0;             // `ParticleStep::shear`
+  double shift_outer = 0.0;             // `ParticleStep::outer`
   double spacing = 0.0;                 // dx, rcut
   double dt = 0.0;                      // rcut / c
   std::uint64_t relax = 0;              // body forces act from this step on

@@ -170,6 +170,7 @@ ParticleStep<D> particle_step(const Model<D>& model, std::uint64_t step) {
   }
   constants.kick = model.terms.body_force && step >= model.relax ? model.fluid_kick : Vec<D, double>{};
   constants.shear = model.shift_shear;
+  constants.outer = model.shift_outer;
   return constants;
 }
 

@@ -3,7 +3,7 @@
 //   rho_ij = W                                                                 density that each gives to the other
 //   F_ij   = G { (p_i V_i^2 + p_j V_j^2) r - beta mu (V_i^2 + V_j^2) v }        momentum that i gains per time
 //   u_ij   = kappa c h (V_i^2 + V_j^2) / (2 V_0) G r                           transport velocity of i
-//   s_ij   = (V_i^2 + V_j^2) / (2 V_0) G q^4 v^2                               shear, which limits the transport
+//   s_ij   = (V_i^2 + V_j^2) / (2 V_0) G v^2, and q^4 times it                agitation and shear, which limit the transport
 //
 // The densities of both are summed first, at the same positions: pressure is a function of positions alone. Every term
 // is symmetric or antisymmetric in i and j to the last bit, and is rounded once to an integer.
@@ -34,11 +34,11 @@ struct FluidPair {
   Real pv2;  // p_i V_i^2 + p_j V_j^2
 };
 
-/// What one pair gives to i. To j it gives the impulse and the shift with the other sign, and the same shear.
+/// What one pair gives to i. To j it gives the impulse and the shift with the other sign, and the same of the others.
 template <int D, class Sum>
 struct PairResult {
   Vec<D, Sum> impulse, shift;
-  Sum shear{};
+  Sum shear{}, agitation{};
 };
 
 /// How a pair's contributions become what is summed.
@@ -96,8 +96,11 @@ MAPPM_INLINE auto fluid_pair(const PairLaw<D, Scalar<Real>>& law, const FluidPai
     result.impulse[axis] = Rounding::of(pressure * r[axis] - friction * pair.v[axis]);
     if constexpr (transport) result.shift[axis] = Rounding::of(shifting * r[axis] * Real(law.shift[axis]));
   }
-  // Of partners near the border of the support, whose velocities differ by the flow more than by chance.
-  if constexpr (transport) result.shear = Rounding::of(shifting * ((q * q) * (q * q)) * dot(pair.v, pair.v));
+  if constexpr (transport) {
+    const Real square = shifting * dot(pair.v, pair.v);
+    result.shear = Rounding::of(square * ((q * q) * (q * q)));
+    result.agitation = Rounding::of(square);
+  }
   return result;
 }
 

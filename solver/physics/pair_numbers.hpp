@@ -54,7 +54,7 @@ class DoublePairs {
   /// Sums of one PP, or of lanes, in quanta of the state.
   template <class Integer>
   MAPPM_INLINE NeighbourSums<D, Integer> sums(const PairResult<D, Integer>& given) const {
-    return {given.impulse, given.shift, given.shear};
+    return {given.impulse, given.shift, given.shear, given.agitation};
   }
   /// A sum of densities, in quanta of the state.
   template <class Integer>
@@ -118,6 +118,7 @@ class SinglePairs {
       sums.shift[axis] = widened(given.shift[axis]) * Wide(static_cast<std::int64_t>(place_[axis]));
     }
     sums.shear = widened(given.shear) * Wide(static_cast<std::int64_t>(impulse_));
+    sums.agitation = widened(given.agitation) * Wide(static_cast<std::int64_t>(impulse_));
     return sums;
   }
   template <class Integer>

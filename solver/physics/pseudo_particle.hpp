@@ -11,11 +11,11 @@
 namespace mappm {
 
 /// Sums over the neighbours of one PP in the force pass, as integers: impulse (iota), shift (position quanta), shear
-/// (iota c). Of several PPs where the integers are lanes.
+/// and agitation (iota c). Of several PPs where the integers are lanes.
 template <int D, class Integer = std::int64_t>
 struct NeighbourSums {
   Vec<D, Integer> impulse, shift;
-  Integer shear{};
+  Integer shear{}, agitation{};
 };
 
 /// Constants of a step, the same for every PP.
@@ -25,6 +25,7 @@ struct ParticleStep {
   Vec<D, double> kick;           // impulse of the body force (c, PP mass 1)
   Vec<D, double> largest_drift;  // `largest_displacement`, in quanta
   double shear;                  // a sum of it (iota c) to the share of the shift that it allows
+  double outer;                  // 1 / m, m the share of outer neighbours on the even lattice (KernelScale)
 };
 
 /// A step of one PP, or of as many as there are lanes, and where it leaves its range (bool, or a mask of lanes).
@@ -37,15 +38,21 @@ struct ParticleMotion {
   } beyond;
 };
 
-/// Share of the shift that the shear of the fluid about a PP allows: min(1, (a h S / c)^2), where S^2 is the sum of the
-/// squares of the gradients of its velocity over D:
-///   S^2 = sum (V_i^2 + V_j^2) / (2 V_0) G q^4 v^2 / (D m),  m = (1 / D) sum V_0 G q^4 r^2 of the even lattice
+/// Share of the shift that the flow about a PP allows: C min(1, (a h S / c)^2), where D S^2 is the sum of the squares of the
+/// gradients of its velocity, and C tells flow from the motion of single PPs to and fro:
+///   S^2 = sum (V_i^2 + V_j^2) / (2 V_0) G q^4 v^2 / (D m),  S_0^2 = sum (V_i^2 + V_j^2) / (2 V_0) G v^2 / D,
+///   m = (1 / D) sum V_0 G q^4 r^2 of the even lattice,      C = (S^2 / S_0^2 - 0.7) / 0.2, at least 0 and at most 1
+/// In a flow velocities differ in proportion to the distance, and S = S_0; where they differ by chance S^2 is a third of it.
 /// The shift moves PPs where their lattice is even, the pressure where the density is at rest. At a wall these are two
-/// places, and a fluid that shifts all the time never comes to rest there. In proportion to S the shift would keep
-/// alive the motion that allows it; by its square it dies out.
+/// places, and a fluid that shifts all the time never comes to rest there. In proportion to S the shift would keep alive
+/// the motion that allows it; by its square it dies out.
 template <int D, class Real>
-MAPPM_INLINE Real shift_share(const Real& shear, const ParticleStep<D>& step) {
-  return smaller(larger(shear * step.shear, constant<Real>(0.0)), constant<Real>(1.0));
+MAPPM_INLINE Real shift_share(const Real& shear, const Real& agitation, const ParticleStep<D>& step) {
+  constexpr double chance = 0.7, flow = 0.9;
+  const Real zero = constant<Real>(0.0), one = constant<Real>(1.0);
+  const Real coherence = shear * Real(step.outer) / larger(agitation, one);
+  return smaller(larger((coherence - Real(chance)) * Real(1.0 / (flow - chance)), zero), one) *
+         smaller(larger(shear * Real(step.shear), zero), one);
 }
 
 /// v + impulse + kick, x + v dt + shift: exact but for the rounding of v dt and of the limited shift to quanta. Where
@@ -56,7 +63,7 @@ MAPPM_INLINE auto motion_of(const Vec<D, Real>& x, const Vec<D, Real>& v, const 
   constexpr double largest_impulse = 0x1p50, largest_velocity = exact_quanta * velocity_quantum;
   ParticleMotion<D, Real, decltype(x[0] < x[0])> motion;
   auto& beyond = motion.beyond;
-  const Real share = shift_share(real_of(sums.shear), step);
+  const Real share = shift_share(real_of(sums.shear), real_of(sums.agitation), step);
   for (int axis = 0; axis < D; ++axis) {
     const Real impulse = real_of(sums.impulse[axis]);
     const Real new_v = v[axis] + (impulse * velocity_quantum + step.kick[axis]);

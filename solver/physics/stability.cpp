@@ -147,7 +147,6 @@ namespace {
 /// Rows of a square lattice on both sides of the surface.
 template <class Kernel, int D>
 double wall_friction_of(double reach, double largest_no_slip) {
-  constexpr double distance = 0.1;
   const int most = static_cast<int>(reach) + 1;
   const auto row = [&](double height) {
     double sum = 0.0;
@@ -164,7 +163,7 @@ double wall_friction_of(double reach, double largest_no_slip) {
     fluid += row(k);
   }
   for (int k = 0; k <= most; ++k) {
-    const Vec<1, double> above{{distance + k + 0.5}}, normal{{1.0}};
+    const Vec<1, double> above{{k + 0.5}}, normal{{1.0}};
     wall += no_slip_factor(above, normal, k + 0.5, 0.25, largest_no_slip) * row(above[0]);
   }
   return std::max(1.0, (2.0 * fluid + wall) / (2.0 * all));

@@ -34,7 +34,7 @@ std::vector<LatticeWave> lattice_waves(KernelKind kernel, double reach);
 bool is_stable(const LatticeWave& wave, double step, double viscosity, double shift_rate);
 
 /// By how much the friction of a PP at a plane wall may exceed that of one in the fluid: by the factors beta, which are
-/// at most `largest_no_slip`, of the FPs beyond. The PP is dx / 10 from the surface, nearer than all but a few come.
+/// at most `largest_no_slip`, of the FPs beyond. The PP touches the surface.
 template <int D>
 double wall_friction(KernelKind kernel, double reach, double largest_no_slip);
 

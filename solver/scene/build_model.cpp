@@ -208,6 +208,15 @@ StepLimits find_limits(const Scene& scene, const Model<D>& model, const Matter& 
   return limits;
 }
 
+/// a, as the scene gives it; by default 5000 nu / (c h), at most 160, for what the shift stirs up at a wall is damped by
+/// viscosity. With more a fluid of this viscosity does not come to rest.
+template <int D>
+double shift_shear(const Scene& scene, const Model<D>& model) {
+  if (scene.fluid.shift_shear) return *scene.fluid.shift_shear;
+  const double h = 0.5 * scene.fluid.cutoff;
+  return std::min(160.0, 5000.0 * scene.fluid.viscosity / scene.fluid.density / (model.units.velocity * h));
+}
+
 /// Constants of the pair law; they carry the step. shift: u dt with u = kappa c h (V_i^2 + V_j^2) / (2 V_0) G r, of
 /// which the law has G dt / iota already.
 template <int D>
@@ -227,8 +236,9 @@ void fold_pair_law(const Scene& scene, const Lattice<D>& lattice, Model<D>& mode
   const double doubled_volume = 2.0 / model.rest_density;
   for (int axis = 0; axis < D; ++axis)
     model.pair.shift[axis] = scene.fluid.shift_rate * h / doubled_volume * velocity_quantum / model.pair.length[axis];
-  const double of_rate = scene.fluid.shift_shear * h;
+  const double of_rate = shift_shear(scene, model) * h;
   model.shift_shear = of_rate * of_rate * velocity_quantum / (D * outer_moment * doubled_volume * model.dt);
+  model.shift_outer = 1.0 / outer_moment;
   model.no_slip_largest = scene.fluid.largest_no_slip;
   const UnitScale& units = model.units;
   model.pair.viscosity =

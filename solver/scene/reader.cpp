@@ -63,7 +63,7 @@ void read_fluid_law(const Fields& table, int dimension, FluidScene& fluid) {
   fluid.transport = table.flag("transport", !classic);
   fluid.background_pressure = table.number("background_pressure", Quantity::plain, Sign::not_negative, 0.0);
   fluid.shift_rate = table.number("shift_rate", Quantity::plain, Sign::positive, fluid.shift_rate);
-  fluid.shift_shear = table.number("shift_shear", Quantity::plain, Sign::positive, fluid.shift_shear);
+  if (table.has("shift_shear")) fluid.shift_shear = table.number("shift_shear", Quantity::plain, Sign::positive);
   for (const char* key : {"shift_rate", "shift_shear"})
     if (!fluid.transport && table.has(key)) table.fail(key, "acts with transport = true only; remove it");
   if (fluid.no_slip == NoSlip::extrapolated) {

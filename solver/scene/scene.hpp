@@ -42,7 +42,7 @@ struct FluidScene {
   bool transport = true;                  // default follows the method
   double background_pressure = 0.0;       // p_b in units of c^2 rho0
   double shift_rate = 0.5;                // kappa of the transport velocity
-  double shift_shear = 45.0;              // a: the share of the shift is at most (a h S / c)^2
+  std::optional<double> shift_shear;      // a of the share of the shift; by default it follows the viscosity
   double largest_no_slip = 1.0;           // bound of the factor beta; by default 4 in the plane, 8 in space
   Precision precision = Precision::full;  // of the pair arithmetic
   Triple velocity{};                      // at the start, m/s

@@ -238,6 +238,7 @@ void SerialEngine<D>::sum_over_fluid(const Numbers& numbers, std::size_t i) {
     sums.impulse += given.impulse;
     sums.shift += given.shift;
     sums.shear += given.shear;
+    sums.agitation += given.agitation;
   });
 }
 
@@ -249,6 +250,7 @@ void SerialEngine<D>::sum_over_frozen(const Numbers& numbers, std::size_t i) {
     sums.impulse += given.impulse;
     sums.shift += given.shift;
     sums.shear += given.shear;
+    sums.agitation += given.agitation;
     frozen_sums_[k].impulse -= given.impulse;
   });
 }
