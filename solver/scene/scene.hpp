@@ -41,7 +41,7 @@ struct FluidScene {
   NoSlip no_slip = NoSlip::extrapolated;  // default follows the method
   bool transport = true;                  // default follows the method
   double background_pressure = 0.0;       // p_b in units of c^2 rho0
-  double shift_rate = 0.5;                // kappa of the transport velocity
+  double shift_rate = 0.3;                // kappa of the transport velocity
   std::optional<double> shift_shear;      // a of the share of the shift; by default it follows the viscosity
   double largest_no_slip = 1.0;           // bound of the factor beta; by default 4 in the plane, 8 in space
   Precision precision = Precision::full;  // of the pair arithmetic
