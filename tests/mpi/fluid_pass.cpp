@@ -144,6 +144,7 @@ void expect_blindness() {
       EXPECT_EQ(clean.forces[i].impulse, dirty.forces[i].impulse) << "particle " << i;
       EXPECT_EQ(clean.forces[i].shift, dirty.forces[i].shift) << "particle " << i;
       EXPECT_EQ(clean.forces[i].shear, dirty.forces[i].shear) << "particle " << i;
+      EXPECT_EQ(clean.forces[i].agitation, dirty.forces[i].agitation) << "particle " << i;
     }
   }
 }
@@ -234,6 +235,7 @@ class AllPairs {
       sums.impulse += given.impulse;
       sums.shift += given.shift;
       sums.shear += given.shear;
+      sums.agitation += given.agitation;
     }
     return sums;
   }
@@ -348,6 +350,7 @@ void expect_sums_of_all_pairs(const Case& test) {
     ASSERT_EQ(found.impulse, sums.impulse) << "particle " << i;
     ASSERT_EQ(found.shift, sums.shift) << "particle " << i;
     ASSERT_EQ(found.shear, sums.shear) << "particle " << i;
+    ASSERT_EQ(found.agitation, sums.agitation) << "particle " << i;
     pairs += all.partners(i);
   }
   EXPECT_GE(pairs, test.least_pairs);
@@ -493,6 +496,7 @@ void expect_frozen_sums_of_all_pairs(const std::string& scene, int threads) {
       on_fluid[i].impulse += given.impulse;
       on_fluid[i].shift += given.shift;
       on_fluid[i].shear += given.shear;
+      on_fluid[i].agitation += given.agitation;
       opposite.impulse -= given.impulse;
     }
     if (region.contains(frozen[k].place.x)) {
@@ -505,6 +509,7 @@ void expect_frozen_sums_of_all_pairs(const std::string& scene, int threads) {
     ASSERT_EQ(found.impulse, sums_of_fluid.impulse + on_fluid[i].impulse) << "particle " << i;
     ASSERT_EQ(found.shift, sums_of_fluid.shift + on_fluid[i].shift) << "particle " << i;
     ASSERT_EQ(found.shear, sums_of_fluid.shear + on_fluid[i].shear) << "particle " << i;
+    ASSERT_EQ(found.agitation, sums_of_fluid.agitation + on_fluid[i].agitation) << "particle " << i;
   }
 }
 

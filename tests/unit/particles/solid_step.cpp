@@ -295,6 +295,7 @@ TEST(ParticleStepConstants, by_hand) {
   model.terms.body_force = true;
   model.relax = 2;
   model.shift_shear = 0.75;
+  model.shift_outer = 3.5;
   model.fluid_kick = {{0x1p-20, 0.0, -0x1p-21}};
   EXPECT_EQ(particle_step(model, 1).kick, (Vec<3, double>{}));
   const ParticleStep<3> step = particle_step(model, 2);
@@ -302,6 +303,7 @@ TEST(ParticleStepConstants, by_hand) {
   EXPECT_EQ(step.drift[1], hand_dt * box_quanta / 8.0);
   EXPECT_EQ(step.largest_drift[2], 0.25 * box_quanta / 8.0);
   EXPECT_EQ(step.shear, 0.75);
+  EXPECT_EQ(step.outer, 3.5);
 }
 
 TEST(RangeMessage, names_step_particle_value_and_cause) {

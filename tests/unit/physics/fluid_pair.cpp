@@ -122,8 +122,10 @@ void compare_with_plain_formulas(const Fluid<D>& fluid, double rho0) {
       EXPECT_NEAR(static_cast<double>(result.shift[axis]) * law.length[axis], u * fluid.dt,
                   law.length[axis] + roundings * std::fabs(u * fluid.dt));
     }
-    const double shear = fluid.dt * g * pair.v2 * q * q * q * q * dot(pair.v, pair.v);
+    const double agitation = fluid.dt * g * pair.v2 * dot(pair.v, pair.v), shear = agitation * q * q * q * q;
     EXPECT_NEAR(static_cast<double>(result.shear) * velocity_quantum, shear, velocity_quantum + roundings * shear);
+    EXPECT_NEAR(static_cast<double>(result.agitation) * velocity_quantum, agitation,
+                velocity_quantum + roundings * agitation);
     EXPECT_NEAR(static_cast<double>(shared_density<WendlandC2>(law, pair)) * density_quantum,
                 scale.weight * wendland(q), density_quantum + 1e-14 * scale.weight);
   }
@@ -153,6 +155,7 @@ void expect_antisymmetry(const Fluid<D>& fluid, double rho0) {
       EXPECT_EQ(on_i.shift[axis], -on_j.shift[axis]);
     }
     EXPECT_EQ(on_i.shear, on_j.shear);
+    EXPECT_EQ(on_i.agitation, on_j.agitation);
     EXPECT_EQ(shared_density<Kernel>(law, pair), shared_density<Kernel>(law, swapped));
   }
 }
@@ -193,6 +196,7 @@ void expect_lanes_like_double(const Fluid<D>& fluid, double rho0) {
       }
       if constexpr (transport) {
         EXPECT_EQ(lanes.shear[lane], one.shear);
+        EXPECT_EQ(lanes.agitation[lane], one.agitation);
       }
       EXPECT_EQ(shared[lane], shared_density<Kernel>(law, pairs[lane]));
     }
@@ -214,6 +218,7 @@ TYPED_TEST(PairLawTest, gives_exactly_nothing_from_the_cutoff_on) {
     EXPECT_EQ(result.impulse, (Vec<2, std::int64_t>{}));
     EXPECT_EQ(result.shift, (Vec<2, std::int64_t>{}));
     EXPECT_EQ(result.shear, 0);
+    EXPECT_EQ(result.agitation, 0);
     EXPECT_EQ(shared_density<TypeParam>(law, pair), 0);
   }
 }

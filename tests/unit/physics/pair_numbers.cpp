@@ -61,7 +61,9 @@ void expect_near_double(const Fluid& fluid) {
       EXPECT_NEAR(static_cast<double>(coarse.shift[axis]) * law.length[axis],
                   static_cast<double>(exact.shift[axis]) * law.length[axis], 5e-9);
     }
-    // q^4 v^2 is far below what friction gives.
+    // G v^2 dt is far below what friction gives, and q^4 times it more so.
+    EXPECT_NEAR(static_cast<double>(coarse.agitation) * velocity_quantum,
+                static_cast<double>(exact.agitation) * velocity_quantum, 0x1p-27 + 2e-9);
     EXPECT_NEAR(static_cast<double>(coarse.shear) * velocity_quantum,
                 static_cast<double>(exact.shear) * velocity_quantum, 0x1p-27 + 2e-9);
     EXPECT_NEAR(static_cast<double>(density_given(single, i, j)) * density_quantum,
@@ -83,6 +85,7 @@ TEST(SinglePairs, give_the_opposite_to_the_other) {
     EXPECT_EQ(to_i.impulse, -to_j.impulse);
     EXPECT_EQ(to_i.shift, -to_j.shift);
     EXPECT_EQ(to_i.shear, to_j.shear);
+    EXPECT_EQ(to_i.agitation, to_j.agitation);
     EXPECT_EQ(density_given(single, i, j), density_given(single, j, i));
   }
 }

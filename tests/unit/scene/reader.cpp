@@ -14,8 +14,8 @@ TEST(SceneReader, FillsDefaults) {
   EXPECT_TRUE(scene.fluid.transport);
   EXPECT_EQ(scene.fluid.no_slip, NoSlip::extrapolated);
   EXPECT_EQ(scene.fluid.kernel, KernelKind::wendland_c2);
-  EXPECT_EQ(scene.fluid.shift_rate, 0.5);
-  EXPECT_EQ(scene.fluid.shift_shear, 45.0);
+  EXPECT_EQ(scene.fluid.shift_rate, 0.3);
+  EXPECT_FALSE(scene.fluid.shift_shear) << "it follows the viscosity";
   EXPECT_EQ(scene.fluid.largest_no_slip, 4.0);
   EXPECT_EQ(scene.fluid.precision, Precision::full);
   EXPECT_EQ(scene.run.step_factor, 1.0);
