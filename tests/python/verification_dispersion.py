@@ -18,21 +18,25 @@ from lattice_theory import KERNELS, Lattice, Law, growth
 from verification.solver import Options, Run, read_points, run
 
 NODES = 12  # along each axis
+LONG = 48  # along x, for waves so long that they are a flow
 REACH = 3.0  # rcut / dx
 STEPS = 5
 TOLERANCE = 2e-6  # of the map; the state rounds a wave of 1e-7 c at its eighth digit
-LARGE_SHARE = 1e15  # shift_shear with which what moves at all has its whole shift
+LARGE_SHARE = 1e8  # shift_shear with which what flows at all has its whole shift
 ENGINES = {"mappm": 1, "mappm-reference": 0}
 
 
 @dataclass(frozen=True)
 class Wave:
-    """Along x, `mode` wavelengths in the box, velocities along `axis`: 0 is sound."""
+    """Along x, `mode` wavelengths in the box, velocities along `axis`: 0 is sound. Its speed in c; at rest it would have no
+    shift."""
 
     dimension: int
     kernel: str
     axis: int
     mode: int
+    nodes: int = NODES  # along x
+    speed: float = 1e-7
 
     @cached_property
     def lattice(self) -> Lattice:
@@ -41,7 +45,7 @@ class Wave:
     @cached_property
     def number(self) -> np.ndarray:
         """k, 1 / rcut"""
-        return np.eye(self.dimension)[0] * 2 * np.pi * self.mode * REACH / NODES
+        return np.eye(self.dimension)[0] * 2 * np.pi * self.mode * REACH / self.nodes
 
     def theory(self, law: Law) -> np.ndarray:
         return self.lattice.wave_map(self.number, self.axis, law)
@@ -56,15 +60,14 @@ class Wave:
         return low
 
     def scene(self, law: Law) -> str:
-        """dx = 1, c = 1, rho_0 = 1. The shift acts on what turns alone: on sound it does with a force across it."""
+        """dx = 1, c = 1, rho_0 = 1."""
         h, direction = 0.5 * REACH, "xyz"[self.axis]
-        turning = 'wave = { amplitude = 1e-9, direction = "y", gradient = "x", mode = 1 }'
         shift = f"shift_rate = {law.shift}\nshift_shear = {LARGE_SHARE}" if law.shift else "transport = false"
         return f"""
             name = "wave"
             units = "dimensionless"
             [box]
-            size = {[float(NODES)] * self.dimension}
+            size = {[float(self.nodes), *[float(NODES)] * (self.dimension - 1)]}
             [fluid]
             density = 1.0
             spacing = 1.0
@@ -74,9 +77,7 @@ class Wave:
             kernel = "{self.kernel}"
             background_pressure = {law.background}
             {shift}
-            wave = {{ amplitude = 1e-7, direction = "{direction}", gradient = "x", mode = {self.mode} }}
-            {"[force]" if law.shift and self.axis == 0 else ""}
-            {turning if law.shift and self.axis == 0 else ""}
+            wave = {{ amplitude = {self.speed}, direction = "{direction}", gradient = "x", mode = {self.mode} }}
             [run]
             step = {law.step * h!r}
             steps = {STEPS}
@@ -93,32 +94,32 @@ class Wave:
             x, v = points["points"][order], points["velocity"][order]
             if not rows:
                 start = x
-                shape = np.sin(2 * np.pi * self.mode * start[:, 0] / NODES)
+                shape = np.sin(2 * np.pi * self.mode * start[:, 0] / self.nodes)
             moved = (x - start + NODES / 2) % NODES - NODES / 2
             rows.append([moved[:, self.axis] @ shape, v[:, self.axis] @ shape * finished.record["time_step"]])
         return np.array(rows) / (shape @ shape)
 
     def measured(self, law: Law, folder: Path, ranks: int) -> np.ndarray:
-        """The map of a step, as `theory` gives it, from a run. Before a force makes a wave turn it has no shift."""
+        """The map of a step, as `theory` gives it, from a run."""
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "scene.toml").write_text(self.scene(law))
-        states = self.states(run(folder / "scene.toml", folder / "out", Options(ranks=ranks)))[1 if law.shift else 0 :]
+        states = self.states(run(folder / "scene.toml", folder / "out", Options(ranks=ranks)))
         step = np.linalg.lstsq(states[:-1], states[1:], rcond=None)[0].T
         dt = law.step * 0.5
         return step * np.array([[1, dt], [1 / dt, 1]])
 
 
-def compare(wave: Wave, law: Law, folder: Path) -> float:
+def compare(wave: Wave, law: Law, folder: Path, tolerance: float = TOLERANCE) -> float:
     """Growth of the wave in a step by theory, with which both engines agree."""
     theory = wave.theory(law)
     for engine, ranks in ENGINES.items():
         found = wave.measured(law, folder / engine, ranks)
         print(f"{engine} {wave} {law}: growth {growth(found):.7f}, theory {growth(theory):.7f}, "
               f"largest difference of the maps {np.abs(found - theory).max():.1e}")
-        assert found == pytest.approx(theory, abs=TOLERANCE)
+        assert found == pytest.approx(theory, abs=tolerance)
         # Two equal factors lie apart by the root of what their map is off by.
-        assert growth(found) == pytest.approx(growth(theory), abs=2 * TOLERANCE**0.5)
-        assert np.linalg.det(found) == pytest.approx(np.linalg.det(theory), abs=4 * TOLERANCE)
+        assert growth(found) == pytest.approx(growth(theory), abs=2 * tolerance**0.5)
+        assert np.linalg.det(found) == pytest.approx(np.linalg.det(theory), abs=4 * tolerance)
     return growth(theory)
 
 
@@ -156,17 +157,27 @@ def test_a_wave_grows_just_beyond_its_limit(tmp_path: Path, dimension: int, kern
 
 @for_every(pytest.mark.parametrize("rate", [0.25, 0.5]))
 def test_the_shift_moves_a_wave_as_theory_says(tmp_path: Path, dimension: int, kernel: str, rate: float) -> None:
-    for axis, mode in ((0, 2), (1, 1), (1, 3)):  # where cos kx is 0 at a node, a shear wave does not turn there
-        wave, law = Wave(dimension, kernel, axis, mode), Law(1.0, 0.01, shift=rate)
-        compare(wave, law, tmp_path / f"{axis}{mode}")
+    for axis, mode in ((0, 3), (1, 1), (1, 3)):
+        wave, law = Wave(dimension, kernel, axis, mode, LONG, speed=1e-4), Law(1.0, 0.01, shift=rate)
+        # There are nodes right at the cutoff, where G'' of Lucy jumps: an error in proportion to the speed.
+        tolerance = 0.2 * wave.speed if kernel == "lucy" else TOLERANCE
+        compare(wave, law, tmp_path / f"{axis}{mode}", tolerance)
         if axis == 0:  # the rate does not know the step
-            assert compare(wave, law.with_step(0.5), tmp_path / "half") < 1.0
+            compare(wave, law.with_step(0.5), tmp_path / "half", tolerance)
 
 
 @pytest.mark.parametrize("ranks", ENGINES.values())
-def test_the_share_of_the_shift_follows_the_shear(tmp_path: Path, ranks: int) -> None:
+def test_what_differs_from_one_pp_to_the_next_has_no_shift(tmp_path: Path, ranks: int) -> None:
+    wave, unshifted = Wave(2, "wendland-c2", 0, 4, speed=1e-4), Law(1.0, 0.01)
+    shifted = Law(1.0, 0.01, shift=0.5)
+    assert np.abs(wave.theory(shifted) - wave.theory(unshifted)).max() > 0.1
+    assert wave.measured(shifted, tmp_path, ranks) == pytest.approx(wave.theory(unshifted), abs=10 * wave.speed)
+
+
+@pytest.mark.parametrize("ranks", ENGINES.values())
+def test_the_share_of_the_shift_follows_shear_and_agitation(tmp_path: Path, ranks: int) -> None:
     """All pairs of the start, by the formulas: u = kappa c h sum (V_i^2 + V_j^2) / (2 V_0) G r, its share
-    min(1, (a h S / c)^2)."""
+    C min(1, (a h S / c)^2), C from 0 to 1 where S^2 / S_0^2 goes from 0.7 to 0.9."""
     rate, a, h = 0.5, 100.0, 0.5 * REACH
     scene = tmp_path / "scene.toml"
     scene.write_text(f"""
@@ -210,9 +221,13 @@ def test_the_share_of_the_shift_follows_the_shear(tmp_path: Path, ranks: int) ->
     even = np.linalg.norm(lattice, axis=1) / REACH
     gradient = np.where((even > 0) & (even < 1), KERNELS["wendland-c2"][2](even), 0.0)
     moment = (gradient * even**6).sum() / (gradient * even**2).sum()
+    agitation = (g * (v**2).sum(axis=2)).sum(axis=1) / 2
     square = (g * q**4 * (v**2).sum(axis=2)).sum(axis=1) / (2 * moment)
-    share = np.minimum(1.0, (a * h) ** 2 * square)
-    assert 0.2 < (share < 1).mean() < 0.8
+    coherence = np.clip((square / agitation - 0.7) / 0.2, 0.0, 1.0)
+    by_shear = np.minimum(1.0, (a * h) ** 2 * square)
+    assert 0.2 < (by_shear < 1).mean() < 0.8
+    assert 0.2 < (coherence < 1).mean() < 0.8
+    share = coherence * by_shear
     found = nearest(end["points"][:, :2] - start["points"][:, :2] - dt * end["velocity"][:, :2])
-    assert found == pytest.approx(share[:, None] * shift, abs=1e-12)
+    assert found == pytest.approx(share[:, None] * shift, abs=2e-9)  # a share has some eight digits
     assert np.abs(shift).max() > 1e-2
