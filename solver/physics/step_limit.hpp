@@ -37,7 +37,7 @@ struct StepLimits {
 
 /// Share of the step of the first instability at which steps are neither warned about nor, at run.step_factor = 1,
 /// longer: a PP may come nearer to others, or to a wall, than on the lattices for which the instability is known.
-inline constexpr double margin_to_instability = 0.85;
+inline constexpr double margin_to_instability = 0.8;
 
 /// Waves of sound and viscosity: dt = h / c at run.step_factor = 1, or less where the first instability, in h / c
 /// (`first_instability`), is near. inviscid: where it would be without viscosity.

@@ -7,17 +7,17 @@ namespace mappm {
 namespace {
 
 TEST(WaveLimit, is_h_over_c_where_instability_is_far) {
-  const StepLimit limit = wave_limit(0.5, 2.0, 1.25, 1.375);  // h / c = 1/4
-  EXPECT_EQ(limit.of, "sound");                               // 0.85 * 1.25 > 1
+  const StepLimit limit = wave_limit(0.5, 2.0, 1.375, 1.375);  // h / c = 1/4
+  EXPECT_EQ(limit.of, "sound");                                // 0.8 * 1.375 > 1
   EXPECT_DOUBLE_EQ(limit.usual, 0.25);
-  EXPECT_DOUBLE_EQ(limit.doubtful, 0.265625);  // 0.85 * 1.25 / 4
-  EXPECT_DOUBLE_EQ(limit.last, 0.3125);     // 1.25 / 4
+  EXPECT_DOUBLE_EQ(limit.doubtful, 0.275);  // 0.8 * 1.375 / 4
+  EXPECT_DOUBLE_EQ(limit.last, 0.34375);    // 1.375 / 4
 }
 
 TEST(WaveLimit, keeps_its_distance_from_instability_and_names_its_cause) {
   const StepLimit viscous = wave_limit(0.5, 2.0, 0.5, 1.375);
   EXPECT_EQ(viscous.of, "viscosity");
-  EXPECT_DOUBLE_EQ(viscous.usual, 0.10625);  // 0.85 * 0.5 / 4
+  EXPECT_DOUBLE_EQ(viscous.usual, 0.1);  // 0.8 * 0.5 / 4
   EXPECT_DOUBLE_EQ(viscous.doubtful, viscous.usual);
   EXPECT_DOUBLE_EQ(viscous.last, 0.125);
   EXPECT_EQ(wave_limit(0.5, 2.0, 0.5, 1.0).of, "shift");  // it would be near without viscosity too
@@ -29,7 +29,7 @@ TEST(LightSolidLimit, by_hand) {
   EXPECT_EQ(limit.of, "added mass");
   EXPECT_DOUBLE_EQ(limit.last, 1.0);
   EXPECT_DOUBLE_EQ(limit.usual, 0.7);
-  EXPECT_DOUBLE_EQ(limit.doubtful, 0.85);
+  EXPECT_DOUBLE_EQ(limit.doubtful, 0.8);
 }
 
 TEST(LightSolidLimit, a_body_that_turns_by_hand) {

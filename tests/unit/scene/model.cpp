@@ -28,10 +28,10 @@ TEST(SceneModel, UnitsAndBox) {
   EXPECT_EQ(model.no_slip_nearest, 0.0625);
 }
 
-/// c dt / h, by default h / c or 0.85 of the first instability, with the friction that a wall adds.
+/// c dt / h, by default h / c or 0.8 of the first instability, with the friction that a wall adds.
 double wave_step(double viscosity, double largest_no_slip, double shift_rate) {
   const double at_walls = wall_friction<2>(KernelKind::wendland_c2, 4.0, largest_no_slip);
-  return std::min(1.0, 0.85 * first_instability<2>(KernelKind::wendland_c2, 4.0, at_walls * viscosity, shift_rate));
+  return std::min(1.0, 0.8 * first_instability<2>(KernelKind::wendland_c2, 4.0, at_walls * viscosity, shift_rate));
 }
 
 TEST(SceneModel, StepIsTheSmallestLimit) {
@@ -251,7 +251,7 @@ TEST(SceneModel, ContactLimitsTheStep) {
 TEST(SceneModel, StepBeyondItsLimitWarnsAndThenFails) {
   const StepLimits limits = make_model<2>(read(one_disc)).limits;
   const StepLimit waves = limits.waves;
-  EXPECT_NEAR(waves.doubtful / waves.last, 0.85, 1e-12);
+  EXPECT_NEAR(waves.doubtful / waves.last, 0.8, 1e-12);
   const auto step = [](double seconds) { return fmt::format("run.step={:.6g}", seconds); };
   EXPECT_TRUE(make_model<2>(read(one_disc, {step(0.99 * waves.doubtful)})).warnings.empty());
   const double near = 0.5 * (waves.doubtful + waves.last);
