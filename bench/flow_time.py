@@ -13,6 +13,7 @@ the machine is slow.
 """
 
 import argparse
+import shutil
 import statistics
 import sys
 from collections.abc import Callable
@@ -88,7 +89,10 @@ class FlowTime(Speed):
 
 def flow_time_of(scene: Scene, build: Path, ranks: int, folder: Path) -> FlowTime:
     default_step = f"run={{step_factor=1.0, duration={scene.flow_time * scene.unit!r}}}"
-    record = run(scene.case, folder / "mappm", Options(ranks=ranks, overrides=(*scene.overrides, default_step), build=build)).record
+    options = Options(ranks=ranks, overrides=(*scene.overrides, default_step), build=build, overwrite=False)
+    out = folder / "mappm"
+    shutil.rmtree(out, ignore_errors=True)  # an older build has no option to overwrite it
+    record = run(scene.case, out, options).record
     pps = record["particles"] - record["frozen_particles"]
     seconds = record["wall_seconds"]["steps"] / (record["steps"] - record["first_step"])
     step = record["time_step"] / scene.unit

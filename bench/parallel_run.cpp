@@ -101,7 +101,7 @@ void measure(const Communicator& world, const std::string& name, std::uint64_t s
     if (phase == "densities" || phase == "pairs") pair_seconds += seconds;
   }
   const double neighbours = mean_neighbours(fluid.model, engine.state().fluid, engine.domains().region(world.rank()));
-  if (!engine.range_error().empty()) throw RangeError(engine.range_error());
+  if (engine.first_fault().any()) throw RangeError(engine.first_fault().text());
   const double particles = std::pow(static_cast<double>(side), D), cores = world.size();
 
   std::vector<std::pair<std::string, double>> figures{{"particles", particles},

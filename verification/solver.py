@@ -60,6 +60,7 @@ class Options:
     faces: bool = False  # write faces.csv; of the parallel solver
     trace: str | None = None  # "ID@STEP": write trace.csv
     resume: Path | None = None
+    overwrite: bool = True  # what an earlier run left in the folder, unless this one resumes it
     neighbours: str | None = None  # search of the reference: "cells" or "all-pairs"
     build: Path | None = None
     isa: str | None = None  # instruction set of a portable build; by default the best of the processor
@@ -102,6 +103,8 @@ class Options:
                 line += [flag, str(value)]
         if self.faces:
             line.append("--faces")
+        if self.overwrite and self.resume is None:
+            line.append("--overwrite")
         for override in self.overrides:
             line += ["--set", override]
         return line

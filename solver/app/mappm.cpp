@@ -9,6 +9,7 @@
 
 #include "app/command.hpp"
 #include "app/instruction_set.hpp"
+#include "app/memory.hpp"
 #include "app/run_loop.hpp"
 #include "parallel/communicator.hpp"
 #include "parallel/domains.hpp"
@@ -36,6 +37,9 @@ struct DomainOptions {
   }
 };
 
+/// Of the parallel engine: measured in plane and space, at 2.5 to 6 spacings of rcut.
+constexpr ParticleBytes particle_bytes{.each = 0.0, .an_axis = 150.0, .a_neighbour = 0.75};
+
 /// Throws InputError. What --isa names was chosen before this code began, if it could be.
 void check_instruction_set(const std::string& isa) {
   if (isa.empty() || isa == instruction_set) return;
@@ -48,16 +52,20 @@ void check_instruction_set(const std::string& isa) {
 template <int D>
 void run_scene(const Scene& scene, const RunOptions& options, const DomainOptions& domain_options,
                const Communicator& communicator) {
+  const MemoryNeed need = memory_need(scene, particle_bytes);
+  check_memory(scene, need, communicator);
   BuiltModel<D> built = together(communicator, [&] { return make_model<D>(scene); });
   const Domains<D> domains =
       together(communicator, [&] { return make_domains<D>(built.model, communicator.size(), domain_options.grid); });
   Start<D> start = start_run<D>(scene, built.model, domains.region(communicator.rank()), options, communicator);
   ParallelOptions engine_options = domain_options.engine;
   if (domain_options.faces) engine_options.faces = scene.output.sample;
+  engine_options.last_step = last_step(scene, built.model, options);
   ParallelEngine<D> engine(built.model, domains, communicator, std::move(start.state), engine_options);
 
   RunSetup<D> setup{scene, built.model, communicator, options, start, built.limits, "mappm", built.warnings};
   setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
+  setup.memory = need.text();
   setup.program_options = domain_options.repeated();
   const Vec<D, int> grid = domains.grid();
   setup.domains.assign(grid.component, grid.component + D);
@@ -72,26 +80,28 @@ void run_scene(const Scene& scene, const RunOptions& options, const DomainOption
 
 int main(int argc, char** argv) try {
   using namespace mappm;
+  open_standard_streams();
   const Communicator communicator(argc, argv);
   watch_stop_signals();
   DomainOptions domain_options;
   const auto add_options = [&](CLI::App& command) {
-    command.add_option(
-        "--domains", domain_options.grid,
-        "domains along x, y(, z), as in 2x4 (default: slabs along the longest side, of equal ones the last)");
-    command.add_option("--threads", domain_options.engine.threads, "threads a process")->check(CLI::Range(1, 256));
-    command
-        .add_option("--rebalance", domain_options.engine.rebalance,
-                    "steps between moves of the domain borders to the particle load (default: at start only)")
-        ->check(not_negative);
+    add_text(command, "--domains", domain_options.grid,
+             "domains along x, y(, z), as in 2x4 (default: slabs along the longest side, of equal ones the last)");
+    add_whole_number(command, "--threads", domain_options.engine.threads, 1, 256, "threads a process (default: 1)");
+    add_whole_number(command, "--rebalance", domain_options.engine.rebalance, 0, most_steps,
+                     "steps between moves of the domain borders to the particle load (default: at start only)");
     command.add_flag("--faces", domain_options.faces,
                      "write to faces.csv, at every sample, the impulse that each domain received from each other");
-    command.add_option("--isa", domain_options.isa, "instruction set (default: the best that the processor has)")
+    add_text(command, "--isa", domain_options.isa, "instruction set (default: the best that the processor has)")
         ->check(CLI::IsMember(std::vector<std::string>(instruction_sets.begin(), instruction_sets.end())));
   };
   return run_command(argc, argv, communicator, "mappm", add_options, [&](const RunOptions& options) {
     together(communicator, [&] { check_instruction_set(domain_options.isa); });
-    const Scene scene = together(communicator, [&] { return read_scene(options.scene, options.overrides); });
+    std::string text;  // read once: a pipe gives it to one process alone
+    on_first(communicator, [&] { text = scene_file_text(options.scene); });
+    text = communicator.broadcast(text, 0);
+    const Scene scene =
+        together(communicator, [&] { return read_scene_text(text, options.scene, options.overrides); });
     if (scene.dimension == 2)
       run_scene<2>(scene, options, domain_options, communicator);
     else

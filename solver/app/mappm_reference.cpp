@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/command.hpp"
+#include "app/memory.hpp"
 #include "app/run_loop.hpp"
 #include "base/single_group.hpp"
 #include "scene/reader.hpp"
@@ -15,14 +16,20 @@ namespace mappm {
 
 namespace {
 
+/// Of the serial engine: measured in plane and space, at 2.5 to 6 spacings of rcut.
+constexpr ParticleBytes particle_bytes{.each = 180.0, .an_axis = 26.0, .a_neighbour = 0.0};
+
 template <int D>
 void run_scene(const Scene& scene, const RunOptions& options, Neighbours neighbours, const Group& group) {
+  const MemoryNeed need = memory_need(scene, particle_bytes);
+  check_memory(scene, need, group);
   BuiltModel<D> built = make_model<D>(scene);
   Start<D> start = start_run<D>(scene, built.model, Region<D>::whole_box(), options, group);
   SerialEngine<D> engine(built.model, std::move(start.state), neighbours);
 
   RunSetup<D> setup{scene, built.model, group, options, start, built.limits, "mappm-reference", built.warnings};
   setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
+  setup.memory = need.text();
   if (neighbours == Neighbours::all_pairs) setup.program_options = " --neighbours all-pairs";
   RunLoop<D, SerialEngine<D>>(setup, engine).run();
 }
@@ -33,6 +40,7 @@ void run_scene(const Scene& scene, const RunOptions& options, Neighbours neighbo
 
 int main(int argc, char** argv) try {
   using namespace mappm;
+  open_standard_streams();
   const SingleGroup group;
   watch_stop_signals();
   Neighbours neighbours = Neighbours::cells;

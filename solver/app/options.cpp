@@ -1,33 +1,58 @@
 #include "app/options.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <optional>
 #include <string_view>
+
+#include "base/error.hpp"
+#include "scene/scene.hpp"
 
 namespace mappm {
 
-const CLI::Validator not_negative(
-    [](std::string& text) { return text.starts_with('-') ? "must not be negative" : std::string(); }, "");
-
 namespace {
 
-/// Throws CLI::ValidationError.
+[[noreturn]] void refuse(const std::string& option, const std::string& text, const std::string& fix) {
+  throw InputError("command line", option, text, fix);
+}
+
+/// In decimal digits; none for any other text and for what 64 bits do not hold.
+std::optional<std::uint64_t> digits(std::string_view text) {
+  std::uint64_t value = 0;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failed != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
 TraceRequest read_trace(const std::string& text) {
-  TraceRequest request;
-  const auto number = [](const char* first, const char* last, std::uint64_t& value) {
-    const auto [end, failed] = std::from_chars(first, last, value);
-    return failed == std::errc{} && end == last;
-  };
-  const std::size_t at = text.find('@');
-  const char *first = text.data(), *last = text.data() + text.size();
-  if (at == std::string::npos || !number(first, first + at, request.particle) ||
-      !number(first + at + 1, last, request.step))
-    throw CLI::ValidationError("--trace", text + ": expected ID@STEP, the id of a PP and a step, as in 1042@36");
-  return request;
+  const std::size_t at = std::min(text.find('@'), text.size());
+  const auto particle = digits(std::string_view(text).substr(0, at));
+  const auto step = at == text.size() ? std::nullopt : digits(std::string_view(text).substr(at + 1));
+  if (!particle || !step) refuse("--trace", text, "write ID@STEP, the id of a PP and a step, as in 1042@36");
+  return {*particle, *step};
 }
 
 }  // namespace
+
+CLI::Option* add_text(CLI::App& command, const std::string& name, std::string& to, const std::string& description) {
+  const auto take = [name, &to](const std::string& text) {
+    if (text.empty()) refuse(name, "\"\"", "is empty; give a value, or leave the option out");
+    to = text;
+  };
+  return command.add_option_function<std::string>(name, take, description);
+}
+
+std::uint64_t whole_number(const std::string& option, const std::string& text, std::uint64_t lowest,
+                           std::uint64_t highest) {
+  const std::optional<std::uint64_t> value = digits(text);
+  if (!value || *value < lowest || *value > highest)
+    refuse(option, text.empty() ? "\"\"" : text,
+           fmt::format("write a whole number from {} to {}, in decimal digits", lowest, highest));
+  return *value;
+}
 
 std::string shell_word(const std::string& word) {
   const auto is_plain = [](unsigned char letter) {
@@ -49,11 +74,16 @@ std::string RunOptions::repeated() const {
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {
-  command.add_option("scene", options.scene, "scene to run (TOML)")->required();
-  command.add_option("--steps", options.steps, "run until this step, counted from the very start of the scene")
-      ->check(not_negative);
-  command.add_option("--out", options.out, "output folder (default: out/<scene name>)");
-  command.add_option("--resume", options.resume, "go on from a checkpoint, or from the newest sound one of a folder");
+  add_text(command, "scene", options.scene, "scene to run (TOML)")->required();
+  add_whole_number(command, "--steps", options.steps, 0, most_steps,
+                   "run until this step, counted from the very start of the scene");
+  add_text(command, "--out", options.out, "output folder (default: out/<scene name>)");
+  CLI::Option* const resume = add_text(command, "--resume", options.resume,
+                                       "go on from a checkpoint, or from the newest sound one of a folder");
+  command
+      .add_flag("--overwrite", options.overwrite,
+                "remove what an earlier run left in the output folder (default: a folder that holds a run is refused)")
+      ->excludes(resume);
   command.add_option("--set", options.overrides, "override a key of the scene: KEY=VALUE; may be repeated")
       ->allow_extra_args(false);
   command

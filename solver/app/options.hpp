@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace mappm {
@@ -21,6 +22,7 @@ struct RunOptions {
   std::optional<std::uint64_t> steps;  // total number of steps, relaxation included; by default what the scene says
   std::string out;                     // output folder; by default out/<scene name>
   std::string resume;                  // checkpoint, or folder; empty: from the start
+  bool overwrite = false;              // what an earlier run left in the folder
   bool quiet = false;
   std::optional<TraceRequest> trace;
 
@@ -35,8 +37,26 @@ struct RunOptions {
 /// A word as a shell reads it back: in quotes where it needs them.
 std::string shell_word(const std::string& word);
 
-/// Numbers without sign read "-5" as a very large one; this refuses it.
-extern const CLI::Validator not_negative;
+/// Adds an option whose value is a text, and never an empty one: a variable of the shell that is not set is no value.
+CLI::Option* add_text(CLI::App& command, const std::string& name, std::string& to, const std::string& description);
+
+/// A whole number of at least `lowest` and at most `highest`, in decimal digits and nothing else. Throws InputError.
+std::uint64_t whole_number(const std::string& option, const std::string& text, std::uint64_t lowest,
+                           std::uint64_t highest);
+
+/// Adds an option whose value is such a number; `to` may be an optional.
+template <class Number>
+CLI::Option* add_whole_number(CLI::App& command, const std::string& name, Number& to, std::uint64_t lowest,
+                              std::uint64_t highest, const std::string& description) {
+  const auto take = [=, &to](const std::string& text) {
+    const std::uint64_t number = whole_number(name, text, lowest, highest);
+    if constexpr (std::is_integral_v<Number>)
+      to = static_cast<Number>(number);
+    else
+      to = number;
+  };
+  return command.add_option_function<std::string>(name, take, description)->type_name("N");
+}
 
 /// Adds the options above to the command `run`.
 void add_run_options(CLI::App& command, RunOptions& options);

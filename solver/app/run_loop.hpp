@@ -20,6 +20,7 @@
 #include "output/durable_file.hpp"
 #include "output/face_series.hpp"
 #include "output/fastest.hpp"
+#include "output/output_trial.hpp"
 #include "output/progress.hpp"
 #include "output/run_record.hpp"
 #include "output/series.hpp"
@@ -41,6 +42,7 @@ struct RunSetup {
   const StepLimits& limits;  // of the step, in scene units
   std::string program;
   std::vector<std::string> warnings;
+  std::string memory = {};           // that is needed, as text
   std::string program_options = {};  // those that only this program has, as given: " --threads 2"
   std::vector<int> domains = {};     // an entry an axis; empty for the reference
   int threads = 1;
@@ -69,7 +71,7 @@ class RunLoop {
   RunLoop(const RunSetup<D>& setup, E& engine)
       : setup_(setup),
         engine_(engine),
-        folder_(setup.options.output_folder(setup.scene.name)),
+        folder_(setup.start.folder.path()),
         first_step_(engine.state().step),
         last_step_(std::max(first_step_, last_step(setup.scene, setup.model, setup.options))),
         sampled_step_(setup.start.sampled_step),
@@ -88,7 +90,7 @@ class RunLoop {
             fmt::format("resume with: {}{} run {}{} --resume {}", ranks > 1 ? fmt::format("mpirun -np {} ", ranks) : "",
                         setup_.program, setup_.options.repeated(), setup_.program_options, shell_word(saved_.string()));
       }
-      remember(measure(setup_.model, engine_.sample(), setup_.group));
+      if (sampled_step_ != step()) sample(engine_.sample());  // the last row
       write_record(state, message);
     } catch (const InputError& error) {
       write_record_of_failure("input error", error.what());
@@ -111,6 +113,7 @@ class RunLoop {
 
   void begin();
   void check_trace() const;
+  void try_last_files();
   void make_step();
   bool advance();
   bool outputs_due() const;
@@ -144,10 +147,10 @@ class RunLoop {
 template <int D, class E>
 requires Engine<E, D>
 void RunLoop<D, E>::begin() {
-  const auto& [scene, model, group, options, start, limits, program, warnings, program_options, domains, threads,
-               faces] = setup_;
+  const auto& [scene, model, group, options, start, limits, program, warnings, memory, program_options, domains,
+               threads, faces] = setup_;
   check_trace();
-  on_first(group, [&] { make_folder(folder_); });
+  start.folder.open(scene.text, group);
   record_.program = program;
   record_.instruction_set = instruction_set;
   record_.scene_file = scene.file;
@@ -164,17 +167,20 @@ void RunLoop<D, E>::begin() {
   record_.domains = domains;
 
   const UnitNames units = scene.units == Units::si ? si_unit_names(D) : UnitNames{};
-  series_.emplace(folder_, model, units, group, start.resumed_step);
-  if (scene.output.solids) solid_series_.emplace(folder_, model, units, group, start.resumed_step);
-  if (faces) face_series_.emplace(folder_, group, start.resumed_step);
   remember(measure(model, engine_.sample(), group));
+  try_last_files();
+  // The last row of the run before may stand beyond its last sample: it is no row of the run that goes on.
+  const auto kept = start.resumed_step.has_value() ? std::optional(start.sampled_step) : std::nullopt;
+  series_.emplace(folder_, model, units, group, kept);
+  if (scene.output.solids) solid_series_.emplace(folder_, model, units, group, kept);
+  if (faces) face_series_.emplace(folder_, group, kept);
   write_record("running", "");
   say_on_first([&] {
     for (const std::string& warning : setup_.warnings) fmt::print(stderr, "warning: {}\n", warning);
     if (!setup_.options.quiet)
-      fmt::print("{}: steps {} to {} {}, {} particles, terms: {}; output in {}\n", record_.scene_name, first_step_,
-                 last_step_, step_text(), record_.particles, fmt::join(term_names(record_.terms), ", "),
-                 folder_.string());
+      fmt::print("{}: steps {} to {} {}, {} particles, about {} of memory, terms: {}; output in {}\n",
+                 record_.scene_name, first_step_, last_step_, step_text(), record_.particles, setup_.memory,
+                 fmt::join(term_names(record_.terms), ", "), folder_.string());
     std::fflush(stdout);
   });
   const ProgressStyle style = group.is_first() ? progress_style(options.quiet) : ProgressStyle::silent;
@@ -188,10 +194,9 @@ bool RunLoop<D, E>::advance() {
   if (!setup_.start.resumed_step.has_value()) write_outputs();
   while (step() < last_step_) {
     make_step();
-    poll_.note(step(), engine_.range_error());
     if (!poll_.due(step()) && !outputs_due()) continue;
     const double steps_done = static_cast<double>(step() - first_step_);
-    const bool stop = poll_.agree_to_stop(step(), stepping_.seconds() / steps_done);
+    const bool stop = poll_.agree_to_stop(step(), stepping_.seconds() / steps_done, engine_.first_fault());
     write_outputs();
     progress_->update(step(), stepping_.seconds() + output_.seconds());
     if (stop && step() < last_step_) {
@@ -223,6 +228,18 @@ void RunLoop<D, E>::check_trace() const {
                                first_step_, last_step_, first_step_, std::max(first_step_ + 1, last_step_) - 1));
 }
 
+/// The snapshot and the checkpoint with which a run ends.
+template <int D, class E>
+requires Engine<E, D>
+void RunLoop<D, E>::try_last_files() {
+  const std::uint64_t fluid = record_.particles - record_.frozen_particles;
+  const SnapshotPaths snapshot(folder_ / snapshot_folder_name, last_step_);
+  const std::filesystem::path checkpoint = checkpoint_path(folder_ / checkpoint_folder_name, last_step_);
+  try_output({{snapshot.solids, record_.particles * snapshot_point_bytes},
+              {checkpoint, checkpoint_bytes<D>(fluid, record_.solids)}},
+             setup_.group);
+}
+
 template <int D, class E>
 requires Engine<E, D>
 bool RunLoop<D, E>::outputs_due() const {
@@ -239,7 +256,7 @@ void RunLoop<D, E>::write_outputs() {
     if (!snapshot_due && !falls_on(output.sample)) return;
     const Sample<D> now = engine_.sample();
     // The snapshot stands first: it shows forces since the sample before.
-    if (snapshot_due) write_snapshot(folder_ / "snapshots", setup_.model, now, sampled_step_, setup_.group);
+    if (snapshot_due) write_snapshot(folder_ / snapshot_folder_name, setup_.model, now, sampled_step_, setup_.group);
     if (falls_on(output.sample)) sample(now);
   });
   const bool checkpoint_due = falls_on(output.checkpoint) || (output.checkpoint != 0 && step() == last_step_);
@@ -348,7 +365,7 @@ void RunLoop<D, E>::write_record(const std::string& state, const std::string& me
   if constexpr (requires { engine_.domains(); }) record_.borders = borders_in_scene_units();
   record_.state = state;
   record_.message = message;
-  on_first(setup_.group, [&] { write_run_record(folder_ / "run.json", record_); });
+  on_first(setup_.group, [&] { write_run_record(folder_ / run_record_name, record_); });
 }
 
 template <int D, class E>

@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "base/group.hpp"
 #include "output/checkpoint_folder.hpp"
+#include "output/run_folder.hpp"
 #include "output/together.hpp"
 #include "scene/build.hpp"
 #include "scene/scene.hpp"
@@ -22,17 +23,23 @@ namespace mappm {
 
 template <int D>
 struct Start {
-  State<D> state;
-  std::optional<std::uint64_t> resumed_step;  // none: from step 0
-  std::uint64_t sampled_step = 0;             // of the last row of the series
-  std::vector<std::string> warnings;
+  RunFolder folder;
+  State<D> state = {};
+  std::optional<std::uint64_t> resumed_step = {};  // none: from step 0
+  std::uint64_t sampled_step = 0;                  // of the last sample
+  std::vector<std::string> warnings = {};
 };
 
-/// Collective. What of the state lies in `region`. Throws InputError.
+inline RunFolder::Entry entry_of(const RunOptions& options) {
+  if (!options.resume.empty()) return RunFolder::Entry::resume;
+  return options.overwrite ? RunFolder::Entry::overwrite : RunFolder::Entry::refuse;
+}
+
+/// Collective. Takes the output folder, then what of the state lies in `region`. Throws InputError.
 template <int D>
 Start<D> start_run(const Scene& scene, const Model<D>& model, const Region<D>& region, const RunOptions& options,
                    const Group& group) {
-  Start<D> start;
+  Start<D> start{RunFolder(options.output_folder(scene.name), entry_of(options), group)};
   if (options.resume.empty()) {
     start.state = together(group, [&] { return build_state<D>(scene, model, region); });
     start.state.start_momentum = momentum_share(start.state);
@@ -55,7 +62,7 @@ std::uint64_t last_step(const Scene& scene, const Model<D>& model, const RunOpti
   if (scene.run.steps > 0) return scene.run.relax + scene.run.steps;
   // A duration of a whole number of steps may come out a rounding error above it.
   const double steps = scene.run.duration / (model.dt * model.units.time());
-  if (steps > 0x1p62)
+  if (steps > static_cast<double>(most_steps))
     throw InputError(scene.file, "run.duration", fmt::format("{}", scene.run.duration),
                      fmt::format("is {:.3g} steps, more than can be counted; shorten it", steps));
   return scene.run.relax + static_cast<std::uint64_t>(std::ceil(steps * (1.0 - 1e-12)));

@@ -23,6 +23,10 @@ class InputError : public std::runtime_error {
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
 };
 
+/// Of a run for which there is not as much memory as was expected.
+inline constexpr const char* memory_ran_out =
+    "memory ran out; enlarge fluid.spacing, or give the run more memory or more machines";
+
 /// A defect that all processes have learned of: reported once.
 class AgreedError : public std::runtime_error {
  public:

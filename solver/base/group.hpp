@@ -17,6 +17,8 @@ class Group {
   virtual ~Group() = default;
   virtual int rank() const = 0;
   virtual int size() const = 0;
+  /// How many of its members run on the machine of this one.
+  virtual int on_this_machine() const { return size(); }
   /// Replaces each entry by its sum over the group, on every member. Exact: integers only.
   virtual void sum(std::span<Int128> values) const = 0;
   virtual void sum(std::span<std::uint64_t> values) const = 0;  // modulo 2^64

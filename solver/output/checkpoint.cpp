@@ -175,6 +175,12 @@ void read_solids(const Hdf5Reader& file, const std::string& path, const Model<D>
 }  // namespace
 
 template <int D>
+std::uint64_t checkpoint_bytes(std::uint64_t fluid_particles, std::uint64_t solids) {
+  const std::uint64_t words = fluid_particles * (1 + FluidParticles<D>::field_count) + solids * solid_word_count<D>();
+  return words * sizeof(std::uint64_t);
+}
+
+template <int D>
 void write_checkpoint(const std::string& path, const std::string& scene_text, const State<D>& state,
                       std::uint64_t sampled_step, const Group& group) {
   Vec<D, Int128> outside_impulse = state.outside_impulse;
@@ -237,6 +243,8 @@ Checkpoint<D> read_checkpoint(const std::string& path, const std::string& scene_
   return checkpoint;
 }
 
+template std::uint64_t checkpoint_bytes<2>(std::uint64_t, std::uint64_t);
+template std::uint64_t checkpoint_bytes<3>(std::uint64_t, std::uint64_t);
 template void write_checkpoint<2>(const std::string&, const std::string&, const State<2>&, std::uint64_t, const Group&);
 template void write_checkpoint<3>(const std::string&, const std::string&, const State<3>&, std::uint64_t, const Group&);
 template Checkpoint<2> read_checkpoint<2>(const std::string&, const std::string&, const Model<2>&, const Region<2>&,

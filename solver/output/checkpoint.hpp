@@ -27,6 +27,10 @@ struct Checkpoint {
   std::uint64_t sampled_step = 0;
 };
 
+/// Length of a checkpoint of so many PPs and solids, without contacts and headers.
+template <int D>
+std::uint64_t checkpoint_bytes(std::uint64_t fluid_particles, std::uint64_t solids);
+
 /// Collective. `scene_text`: the declaration of the scene. Throws InputError where the file cannot be completed.
 template <int D>
 void write_checkpoint(const std::string& path, const std::string& scene_text, const State<D>& state,

@@ -81,10 +81,14 @@ std::vector<fs::path> list_checkpoints(const fs::path& folder) {
   return paths;
 }
 
+fs::path checkpoint_path(const fs::path& folder, std::uint64_t step) {
+  return folder / fmt::format("{}{:09}{}", name_prefix, step, name_ending);
+}
+
 template <int D>
 fs::path save_checkpoint(const fs::path& folder, const std::string& scene_text, const State<D>& state,
                          std::uint64_t sampled_step, const Group& group) {
-  fs::path path = folder / fmt::format("{}{:09}{}", name_prefix, state.step, name_ending);
+  fs::path path = checkpoint_path(folder, state.step);
   on_first(group, [&] { make_folder(folder); });
   try {
     write_checkpoint(partial_name(path).string(), scene_text, state, sampled_step, group);

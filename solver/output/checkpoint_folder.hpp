@@ -9,7 +9,10 @@
 
 namespace mappm {
 
-/// Collective. Writes `folder`/checkpoint_SSSSSSSSS.h5, S being the step, and then removes all but the newest two
+/// `folder`/checkpoint_SSSSSSSSS.h5, S being the step.
+std::filesystem::path checkpoint_path(const std::filesystem::path& folder, std::uint64_t step);
+
+/// Collective. Writes the checkpoint of the step of the state, and then removes all but the newest two
 /// files of that kind. Throws InputError where it cannot be completed; those before it are then untouched.
 /// Returns the path of the new one.
 template <int D>

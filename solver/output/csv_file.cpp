@@ -66,8 +66,7 @@ void CsvFile::check(const std::ostream& stream) const {
 }
 
 void CsvFile::refuse(int cause) const {
-  throw InputError(path_.string() + ": cannot be written: " + std::strerror(cause) +
-                   "; free space, or choose another folder with --out");
+  refuse_to_write(path_, cause);
 }
 
 }  // namespace mappm

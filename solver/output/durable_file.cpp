@@ -11,17 +11,17 @@
 
 namespace mappm {
 
-namespace {
-
-[[noreturn]] void refuse(const std::filesystem::path& path, int code) {
+void refuse_to_write(const std::filesystem::path& path, int code) {
   throw InputError(path.string() + ": cannot be written: " + std::strerror(code) +
                    "; free space, or choose another folder with --out");
 }
 
+namespace {
+
 class Descriptor {
  public:
   Descriptor(const std::filesystem::path& path, int flags) : path_(path), number_(::open(path.c_str(), flags, 0666)) {
-    if (number_ < 0) refuse(path, errno);
+    if (number_ < 0) refuse_to_write(path, errno);
   }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
@@ -32,19 +32,19 @@ class Descriptor {
     std::size_t done = 0;
     while (done < text.size()) {
       const ssize_t written = ::write(number_, text.data() + done, text.size() - done);
-      if (written < 0) refuse(path_, errno);
+      if (written < 0) refuse_to_write(path_, errno);
       done += static_cast<std::size_t>(written);
     }
   }
   void reserve(std::uint64_t first, std::uint64_t count) {
     const int done = ::fallocate(number_, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(first), static_cast<off_t>(count));
-    if (done != 0 && (errno == ENOSPC || errno == EDQUOT || errno == EFBIG)) refuse(path_, errno);
+    if (done != 0 && (errno == ENOSPC || errno == EDQUOT || errno == EFBIG)) refuse_to_write(path_, errno);
   }
   void sync_and_close() {
-    if (::fsync(number_) != 0) refuse(path_, errno);
+    if (::fsync(number_) != 0) refuse_to_write(path_, errno);
     const int closed = ::close(number_);
     number_ = -1;
-    if (closed != 0) refuse(path_, errno);
+    if (closed != 0) refuse_to_write(path_, errno);
   }
 
  private:
@@ -61,7 +61,7 @@ void publish(const std::filesystem::path& path) {
   Descriptor(partial, O_RDONLY).sync_and_close();
   std::error_code failed;
   std::filesystem::rename(partial, path, failed);
-  if (failed) refuse(path, failed.value());
+  if (failed) refuse_to_write(path, failed.value());
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   Descriptor(folder, O_RDONLY | O_DIRECTORY).sync_and_close();
 }

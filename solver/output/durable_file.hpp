@@ -7,6 +7,9 @@
 
 namespace mappm {
 
+/// Throws InputError for a file that cannot be written; `code` is that of the system.
+[[noreturn]] void refuse_to_write(const std::filesystem::path& path, int code);
+
 /// The name under which a file is written before it is published.
 std::filesystem::path partial_name(const std::filesystem::path& path);
 

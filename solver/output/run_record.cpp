@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <ctime>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/numerics_version.hpp"
@@ -100,6 +101,13 @@ std::string run_record_text(const RunRecord& record) {
   json["state"] = record.state;
   if (!record.message.empty()) json["message"] = record.message;
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::string recorded_scene(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
+  const nlohmann::json::json_pointer text("/scene/text");
+  return json.is_object() && json.contains(text) && json[text].is_string() ? json[text].get<std::string>() : "";
 }
 
 void write_run_record(const std::filesystem::path& path, const RunRecord& record) {

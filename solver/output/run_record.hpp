@@ -43,6 +43,11 @@ struct RunRecord {
 /// The record as JSON text; commit, compiler, flags, host and date are added.
 std::string run_record_text(const RunRecord& record);
 
+inline constexpr const char* run_record_name = "run.json";
+
+/// The text of the scene in a record; empty where the file is none.
+std::string recorded_scene(const std::filesystem::path& path);
+
 /// Writes it as a whole or not at all. Throws InputError.
 void write_run_record(const std::filesystem::path& path, const RunRecord& record);
 

@@ -181,17 +181,22 @@ void write_points(const std::filesystem::path& path, const Group& group, Fill&& 
 
 }  // namespace
 
+SnapshotPaths::SnapshotPaths(const std::filesystem::path& folder, std::uint64_t step) {
+  const std::string ending = fmt::format("_{:09}.vtkhdf", step);
+  fluid = folder / ("fluid" + ending);
+  solids = folder / ("solids" + ending);
+}
+
 template <int D>
 void write_snapshot(const std::filesystem::path& folder, const Model<D>& model, const Sample<D>& sample,
                     std::uint64_t sampled_step, const Group& group) {
   const State<D>& state = sample.state;
   on_first(group, [&] { make_folder(folder); });
   const double time = static_cast<double>(state.step) * (model.dt * model.units.time());
-  const std::string ending = fmt::format("_{:09}.vtkhdf", state.step);
-  const std::filesystem::path fluid_path = folder / ("fluid" + ending);
-  write_points(fluid_path, group, [&] {
+  const SnapshotPaths paths(folder, state.step);
+  write_points(paths.fluid, group, [&] {
     const FluidPoints points = fluid_points(model, sample);
-    PointFile file(fluid_path, points.place, time, state.step, group);
+    PointFile file(paths.fluid, points.place, time, state.step, group);
     file.point_data("velocity", points.velocity, 3);
     file.point_data("density", points.density, 0);
     file.point_data("pressure", points.pressure, 0);
@@ -204,10 +209,9 @@ void write_snapshot(const std::filesystem::path& folder, const Model<D>& model, 
   bool any_sp = false;
   for (const Shape<D>& shape : model.shapes) any_sp = any_sp || !is_wall_piece(shape);
   if (!any_sp) return;
-  const std::filesystem::path solid_path = folder / ("solids" + ending);
-  write_points(solid_path, group, [&] {
+  write_points(paths.solids, group, [&] {
     const SolidPoints points = solid_points(model, state, sampled_step);
-    PointFile file(solid_path, points.place, time, state.step, group);
+    PointFile file(paths.solids, points.place, time, state.step, group);
     file.point_data("radius", points.radius, 0);
     file.point_data("velocity", points.velocity, 3);
     file.point_data("angular_velocity", points.angular_velocity, 3);

@@ -11,6 +11,18 @@
 
 namespace mappm {
 
+/// Name of the folder of snapshots in the output folder of a run.
+inline constexpr const char* snapshot_folder_name = "snapshots";
+
+/// Paths of the files of a step: of the fluid, of the SPs.
+struct SnapshotPaths {
+  SnapshotPaths(const std::filesystem::path& folder, std::uint64_t step);
+  std::filesystem::path fluid, solids;
+};
+
+/// Bytes of a point of the fluid in its file.
+inline constexpr std::uint64_t snapshot_point_bytes = 100;
+
 /// Collective. Writes `folder`/fluid_SSSSSSSSS.vtkhdf and, where the scene has SPs, `folder`/solids_SSSSSSSSS.vtkhdf,
 /// S being the step. Throws InputError where they cannot be written.
 ///

@@ -1,6 +1,7 @@
 #include "output/together.hpp"
 
 #include <array>
+#include <new>
 #include <stdexcept>
 
 namespace mappm {
@@ -16,6 +17,7 @@ constexpr char other_kind = 'o';
 std::string describe_failure(const std::exception& error) {
   if (dynamic_cast<const InputError*>(&error) != nullptr) return input_kind + std::string(error.what());
   if (dynamic_cast<const RangeError*>(&error) != nullptr) return range_kind + std::string(error.what());
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return input_kind + std::string(memory_ran_out);
   return other_kind + std::string(error.what());
 }
 

@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
@@ -34,21 +35,29 @@ void reduce(std::span<T> values, MPI_Datatype type, MPI_Op operation) {
 }  // namespace
 
 struct Communicator::Impl {
-  int rank = 0, size = 1;
+  int rank = 0, size = 1, on_this_machine = 1;
   std::vector<MPI_Request> requests;  // of messages being sent
 };
 
 Communicator::Communicator(int& argc, char**& argv) : impl_(std::make_unique<Impl>()) {
+  // Open MPI names a file of its own after each that is written together, in a buffer of 256 bytes: longer paths end in
+  // an overflow. The part that does so serves shared file pointers, which are not used here.
+  ::setenv("OMPI_MCA_sharedfp", "^lockedfile", 0);
   int provided = 0;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &impl_->rank);
   MPI_Comm_size(MPI_COMM_WORLD, &impl_->size);
+  MPI_Comm machine = MPI_COMM_NULL;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, impl_->rank, MPI_INFO_NULL, &machine);
+  MPI_Comm_size(machine, &impl_->on_this_machine);
+  MPI_Comm_free(&machine);
 }
 
 Communicator::~Communicator() { MPI_Finalize(); }
 
 int Communicator::rank() const { return impl_->rank; }
 int Communicator::size() const { return impl_->size; }
+int Communicator::on_this_machine() const { return impl_->on_this_machine; }
 
 void Communicator::sum(std::span<Int128> values) const {
   std::vector<std::int64_t> pieces(3 * values.size());

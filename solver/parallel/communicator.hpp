@@ -22,6 +22,7 @@ class Communicator : public Group {
 
   int rank() const override;
   int size() const override;
+  int on_this_machine() const override;
   void sum(std::span<Int128> values) const override;
   void sum(std::span<std::uint64_t> values) const override;
   void minimum(std::span<double> values) const override;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -38,15 +39,11 @@ Vec<D, int> parse_grid(const std::string& text, int processes) {
   std::size_t at = 0;
   std::int64_t product = 1;
   for (int axis = 0; axis < D; ++axis) {
-    std::size_t used = 0;
-    try {
-      grid[axis] = std::stoi(text.substr(at), &used);
-    } catch (const std::exception&) {
-      grid[axis] = 0;
-    }
-    at += used;
+    const char* const first = text.data() + std::min(at, text.size());
+    const auto [end, failed] = std::from_chars(first, text.data() + text.size(), grid[axis]);
+    at = static_cast<std::size_t>(end - text.data());
     const bool separator_fits = axis == D - 1 ? at == text.size() : at < text.size() && text[at] == 'x';
-    if (grid[axis] < 1 || grid[axis] > most_domains || !separator_fits)
+    if (failed != std::errc{} || grid[axis] < 1 || grid[axis] > most_domains || !separator_fits)
       throw InputError("command line", "--domains", text,
                        fmt::format("expected {} positive numbers such as {}", D, D == 2 ? "2x4" : "2x2x1"));
     ++at;

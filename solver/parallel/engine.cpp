@@ -162,15 +162,14 @@ void ParallelEngine<D>::close_densities() {
   density_.resize(state_.fluid.size());
   const std::vector<std::uint32_t> others = residents_->others();
   const auto wrong = std::visit([&](auto& pass) { return pass.close_densities(others, density_); }, pass_);
-  if (wrong)
-    note(density_message(state_.step, particle_text(state_.fluid.id[*wrong]), density_[*wrong] / model_.rest_density));
+  for (std::size_t i = wrong.value_or(density_.size()); i < density_.size(); ++i)
+    note_density(model_, {state_.step, FaultPlace::What::fluid_density, state_.fluid.id[i]}, density_[i], fault_);
   for (std::size_t k = 0; k < solids_.frozen.size(); ++k) {
     FrozenInStep<D>& fp = solids_.frozen[k];
     if (!halo_->region().contains(fp.place.x)) continue;
     set_density(model_, fp, summed_density(frozen_density_sums_[k], fp.own_density));
-    if (!is_in_range(fp.density, model_.rest_density))
-      note(density_message(state_.step, frozen_text(solids_.bodies[fp.solid].solid->id, fp.index),
-                           fp.density / model_.rest_density));
+    const std::uint64_t solid = solids_.bodies[fp.solid].solid->id;
+    note_density(model_, {state_.step, FaultPlace::What::frozen_density, solid, fp.index}, fp.density, fault_);
   }
 }
 
@@ -287,7 +286,9 @@ void ParallelEngine<D>::move_solids(const std::vector<HomeReport<D>>& from_other
       add_face_contacts(model_, one, loads_[a]);
     }
   for (std::size_t a = 0; a < state_.solids.size(); ++a) {
-    note(finish_step(model_, state_.step, state_.solids[a], std::move(loads_[a]), state_.outside_impulse));
+    Solid<D>& solid = state_.solids[a];
+    fault_.note({state_.step, FaultPlace::What::solid_motion, solid.id},
+                finish_step(model_, state_.step, solid, std::move(loads_[a]), state_.outside_impulse));
   }
 }
 
@@ -313,12 +314,12 @@ void ParallelEngine<D>::find_rows() {
 /// filled.
 template <int D>
 void ParallelEngine<D>::move_fluid() {
-  FluidMotion<D> all(model_, state_.step, halo_->region(), range_error_);
+  FluidMotion<D> all(model_, state_.step, halo_->region(), fault_);
   std::visit(
       [&](auto& pass) {
 #pragma omp parallel num_threads(options_.threads) if (options_.threads > 1)
         {
-          FluidMotion<D> motion(model_, state_.step, halo_->region(), range_error_);
+          FluidMotion<D> motion(model_, state_.step, halo_->region(), fault_);
 #pragma omp for schedule(static)
           for (std::size_t n = 0; n < rows_.size(); ++n) {
             const Row& row = rows_[n];

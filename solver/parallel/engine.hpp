@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "parallel/communicator.hpp"
@@ -24,6 +23,7 @@ struct ParallelOptions {
   int threads = 1;
   std::uint64_t rebalance = 0;  // steps between moves of the domain borders to the particle load; 0: never
   std::uint64_t faces = 0;      // steps between ledgers of the faces of the domains; 0: none
+  std::uint64_t last_step = 0;  // of the run: it has a ledger as well
 };
 
 template <int D>
@@ -37,7 +37,7 @@ class ParallelEngine {
   std::uint64_t present_step() const { return state_.step; }
   State<D>& state();
   Sample<D> sample();
-  const std::string& range_error() const { return range_error_; }
+  const FirstFault& first_fault() const { return fault_; }
   PhaseSeconds phase_seconds() const { return watch_.seconds(); }
   Traffic traffic() const;
   /// Steps so far in which the PPs of this process were put in order anew.
@@ -55,15 +55,15 @@ class ParallelEngine {
 
  private:
   void start_domains();
-  bool faces_due() const { return options_.faces > 0 && (state_.step + 1) % options_.faces == 0; }
+  bool faces_due() const {
+    const std::uint64_t step = state_.step + 1;
+    return options_.faces > 0 && (step % options_.faces == 0 || step == options_.last_step);
+  }
   void sum_densities(bool alone);
   void place_solids();
   void order_fluid(bool single_step);
   void close_densities();
   void sum_forces();
-  void note(const std::string& fault) {
-    if (range_error_.empty()) range_error_ = fault;
-  }
   void explain_pairs();
   void find_rows();
   void move_fluid();
@@ -102,7 +102,7 @@ class ParallelEngine {
   MaybeTrace<D> trace_;
 
   std::uint64_t orderings_ = 0;
-  std::string range_error_;
+  FirstFault fault_;
   Stopwatch watch_;
   Traffic before_;  // of the domains before the present ones
 };

@@ -3,9 +3,9 @@
 
 #include <cmath>
 #include <cstdint>
-#include <string>
 
 #include "base/lanes.hpp"
+#include "particles/first_fault.hpp"
 #include "particles/model.hpp"
 #include "particles/solid_step.hpp"
 #include "particles/state.hpp"
@@ -18,9 +18,8 @@ namespace mappm {
 template <int D>
 class FluidMotion {
  public:
-  /// Only PPs in `region` will be moved. `fault` becomes the first value out of its range if it is empty; threads may
-  /// share it.
-  FluidMotion(const Model<D>& model, std::uint64_t step, const Region<D>& region, std::string& fault)
+  /// Only PPs in `region` will be moved. `fault` hears of each value out of its range; threads may share it.
+  FluidMotion(const Model<D>& model, std::uint64_t step, const Region<D>& region, FirstFault& fault)
       : model_(model), step_(step), region_(region), constants_(particle_step(model, step)), fault_(fault) {}
 
   /// Moves PPs [first, first + count), which lie side by side from this place of the pass on. `pass` gives their sums
@@ -87,7 +86,7 @@ class FluidMotion {
     const Vec<D, double> before = x;
     const RangeFault fault = advance(x, v, sums, constants_);
     if (fault != RangeFault::none) [[unlikely]]
-      report(fault_, fault, step_, fluid.id[i], v, sums);
+      report(fault_, fault, {step_, FaultPlace::What::fluid_motion, fluid.id[i]}, v, sums);
     for (int axis = 0; axis < D; ++axis) {
       fluid.x(axis)[i] = x[axis];
       fluid.v(axis)[i] = v[axis];
@@ -120,17 +119,17 @@ class FluidMotion {
     return true;
   }
 
-  [[gnu::noinline]] static void report(std::string& first, RangeFault fault, std::uint64_t step, std::uint64_t id,
+  [[gnu::noinline]] static void report(FirstFault& first, RangeFault fault, const FaultPlace& place,
                                        const Vec<D, double>& v, const NeighbourSums<D>& sums) {
 #pragma omp critical
-    if (first.empty()) first = range_message(fault, step, id, v, sums);
+    note_motion(fault, place, v, sums, first);
   }
 
   const Model<D>& model_;
   std::uint64_t step_;
   Region<D> region_;
   ParticleStep<D> constants_;
-  std::string& fault_;
+  FirstFault& fault_;
   std::uint64_t count_ = 0;
   Lanes square_{0.0};       // of the largest displacement, rcut^2
   Vec<D, Int128> given_{};  // by the field of force

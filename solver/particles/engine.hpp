@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "particles/density_field.hpp"
+#include "particles/first_fault.hpp"
 #include "particles/pair_trace.hpp"
 #include "particles/state.hpp"
 
@@ -24,7 +25,7 @@ struct Traffic {
 
 template <class E, int D>
 concept Engine = requires(E engine, const E constant) {
-  /// Advances the state by one step. Never throws on a value out of range: it is recorded in range_error().
+  /// Advances the state by one step. Never throws on a value out of range: it is recorded in first_fault().
   engine.step();
   /// Steps made since the start of the scene. Costs nothing.
   { constant.present_step() } -> std::same_as<std::uint64_t>;
@@ -33,8 +34,8 @@ concept Engine = requires(E engine, const E constant) {
   { engine.state() } -> std::same_as<State<D>&>;
   /// Collective. The same, with the densities at its positions. The state is valid until the next step.
   { engine.sample() } -> std::same_as<Sample<D>>;
-  /// Empty, or the first value that left its range on this process: step, particle, value and likely cause.
-  { constant.range_error() } -> std::convertible_to<std::string>;
+  /// The first value that left its range on this process, if any did.
+  { constant.first_fault() } -> std::same_as<const FirstFault&>;
   { constant.phase_seconds() } -> std::convertible_to<PhaseSeconds>;
   /// Asks for the trace of one PP in the next step; after it the owner of the PP has the trace, for one step.
   engine.trace_next_step(std::uint64_t{});

@@ -174,21 +174,24 @@ ParticleStep<D> particle_step(const Model<D>& model, std::uint64_t step) {
   return constants;
 }
 
-std::string particle_text(std::uint64_t id) { return fmt::format("particle {}", id); }
-std::string frozen_text(std::uint64_t solid, std::uint32_t index) {
-  return fmt::format("solid {}, frozen particle {}", solid, index);
-}
-
-std::string density_message(std::uint64_t step, const std::string& where, double ratio) {
-  return fmt::format(
-      "step {}: {}: density {:.3g} times rest, outside {} to {}; the fluid tears or collapses there: raise the sound "
-      "speed or resolve the gap",
-      step, where, ratio, lowest_density_ratio, highest_density_ratio);
-}
-
 template <int D>
-std::string range_message(RangeFault fault, std::uint64_t step, std::uint64_t id, const Vec<D, double>& v,
-                          const NeighbourSums<D>& sums) {
+void note_density(const Model<D>& model, const FaultPlace& place, double density, FirstFault& first) {
+  if (is_in_range(density, model.rest_density) || !first.follows(place)) return;
+  const std::string where = place.what == FaultPlace::What::frozen_density
+                                ? fmt::format("solid {}, frozen particle {}", place.id, place.index)
+                                : fmt::format("particle {}", place.id);
+  first.note(place, fmt::format("step {}: {}: density {:.3g} times rest, outside {} to {}; the fluid tears or collapses "
+                                "there: raise the sound speed or resolve the gap",
+                                place.step, where, density / model.rest_density, lowest_density_ratio,
+                                highest_density_ratio));
+}
+
+namespace {
+
+/// Step, particle, value and likely cause.
+template <int D>
+std::string motion_message(RangeFault fault, std::uint64_t step, std::uint64_t id, const Vec<D, double>& v,
+                           const NeighbourSums<D>& sums) {
   switch (fault) {
     case RangeFault::impulse: {
       double largest = 0.0;
@@ -215,13 +218,22 @@ std::string range_message(RangeFault fault, std::uint64_t step, std::uint64_t id
   return {};
 }
 
+}  // namespace
+
+template <int D>
+void note_motion(RangeFault fault, const FaultPlace& place, const Vec<D, double>& v, const NeighbourSums<D>& sums,
+                 FirstFault& first) {
+  if (first.follows(place)) first.note(place, motion_message(fault, place.step, place.id, v, sums));
+}
+
 #define MAPPM_INSTANTIATE(D)                                                                                       \
   template void add_contacts<D>(const Model<D>&, const SolidInStep<D>&, const SolidInStep<D>&, SolidLoad<D>&);     \
   template void add_face_contacts<D>(const Model<D>&, const SolidInStep<D>&, SolidLoad<D>&);                       \
   template std::string finish_step<D>(const Model<D>&, std::uint64_t, Solid<D>&, SolidLoad<D>&&, Vec<D, Int128>&); \
   template ParticleStep<D> particle_step<D>(const Model<D>&, std::uint64_t);                                       \
-  template std::string range_message<D>(RangeFault, std::uint64_t, std::uint64_t, const Vec<D, double>&,           \
-                                        const NeighbourSums<D>&);
+  template void note_density<D>(const Model<D>&, const FaultPlace&, double, FirstFault&);                          \
+  template void note_motion<D>(RangeFault, const FaultPlace&, const Vec<D, double>&, const NeighbourSums<D>&,      \
+                               FirstFault&);
 MAPPM_INSTANTIATE(2)
 MAPPM_INSTANTIATE(3)
 #undef MAPPM_INSTANTIATE

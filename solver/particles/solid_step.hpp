@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "particles/first_fault.hpp"
 #include "particles/model.hpp"
 #include "particles/state.hpp"
 #include "physics/pseudo_particle.hpp"
@@ -53,14 +54,13 @@ std::string finish_step(const Model<D>& model, std::uint64_t step, Solid<D>& sol
 template <int D>
 ParticleStep<D> particle_step(const Model<D>& model, std::uint64_t step);
 
-/// Text for a density out of range, in units of that at rest: of "particle 7", or of an FP.
-std::string particle_text(std::uint64_t id);
-std::string frozen_text(std::uint64_t solid, std::uint32_t index);
-std::string density_message(std::uint64_t step, const std::string& where, double ratio);
-
-/// Text for another value out of range: step, particle, value and likely cause.
+/// Notes a density, of a PP or an FP, that is out of range.
 template <int D>
-std::string range_message(RangeFault fault, std::uint64_t step, std::uint64_t id, const Vec<D, double>& v,
-                          const NeighbourSums<D>& sums);
+void note_density(const Model<D>& model, const FaultPlace& place, double density, FirstFault& first);
+
+/// Notes what left its range when a PP of this velocity was moved by these sums.
+template <int D>
+void note_motion(RangeFault fault, const FaultPlace& place, const Vec<D, double>& v, const NeighbourSums<D>& sums,
+                 FirstFault& first);
 
 }  // namespace mappm

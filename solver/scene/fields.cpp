@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "base/error.hpp"
@@ -69,6 +70,12 @@ void Fields::finish() const {
     if (const std::string name{key.str()}; !contains(asked_, name)) fail_unknown(name);
 }
 
+/// A number that is read as another than its digits say is more often a slip than meant.
+std::int64_t Fields::integer_of(const toml::value<std::int64_t>& integer, const std::string& key) const {
+  if (integer.flags() != toml::value_flags::none) fail(key, "is not decimal; write it in decimal digits");
+  return integer.get();
+}
+
 double Fields::number_of(const toml::node& node, const std::string& key, Quantity quantity, Sign sign) const {
   double value = 0.0;
   if (const auto* text = node.as_string()) {
@@ -80,7 +87,7 @@ double Fields::number_of(const toml::node& node, const std::string& key, Quantit
       fail(key, error.what());
     }
   } else if (const auto* integer = node.as_integer()) {
-    value = static_cast<double>(integer->get());
+    value = static_cast<double>(integer_of(*integer, key));
   } else if (const auto* real = node.as_floating_point()) {
     value = real->get();
   } else {
@@ -106,9 +113,18 @@ double Fields::number(const std::string& key, Quantity quantity, Sign sign, doub
 std::uint64_t Fields::count(const std::string& key, std::optional<std::uint64_t> fallback) const {
   if (fallback && !has(key)) return *fallback;
   const auto* integer = require(key).as_integer();
-  if (!integer) fail(key, "wrong type; write a whole number without a decimal point");
-  if (integer->get() < 0) fail(key, "must not be negative; write 0 or more");
-  return static_cast<std::uint64_t>(integer->get());
+  if (!integer)
+    fail(key, fmt::format("wrong type; write a whole number without a decimal point, at most {}",
+                          std::numeric_limits<std::int64_t>::max()));
+  const std::int64_t value = integer_of(*integer, key);
+  if (value < 0) fail(key, "must not be negative; write 0 or more");
+  return static_cast<std::uint64_t>(value);
+}
+
+std::uint64_t Fields::steps(const std::string& key, std::optional<std::uint64_t> fallback) const {
+  const std::uint64_t steps = count(key, fallback);
+  if (steps > most_steps) fail(key, fmt::format("is more steps than can be counted; write at most {}", most_steps));
+  return steps;
 }
 
 bool Fields::flag(const std::string& key, bool fallback) const {

@@ -34,6 +34,8 @@ class Fields {
   double number(const std::string& key, Quantity quantity, Sign sign) const;
   double number(const std::string& key, Quantity quantity, Sign sign, double fallback) const;
   std::uint64_t count(const std::string& key, std::optional<std::uint64_t> fallback = {}) const;
+  /// A count of steps, at most `most_steps`.
+  std::uint64_t steps(const std::string& key, std::optional<std::uint64_t> fallback = {}) const;
   bool flag(const std::string& key, bool fallback) const;
   std::string word(const std::string& key) const;
   bool is_word(const std::string& key) const;  // for a key of two types
@@ -79,6 +81,7 @@ class Fields {
  private:
   const toml::node* find(const std::string& key) const;
   const toml::node& require(const std::string& key) const;
+  std::int64_t integer_of(const toml::value<std::int64_t>& integer, const std::string& key) const;
   double number_of(const toml::node& node, const std::string& key, Quantity quantity, Sign sign) const;
   Triple triple_of(const toml::node& node, const std::string& key, Quantity quantity) const;
   [[noreturn]] void fail_choice(const std::string& key, const std::vector<std::string>& known) const;

@@ -143,19 +143,19 @@ RunScene read_run(const Fields& table) {
   if (table.has("duration"))
     run.duration = table.number("duration", Quantity::time, Sign::positive);
   else
-    run.steps = table.count("steps");
+    run.steps = table.steps("steps");
   if (run.duration == 0.0 && run.steps == 0) table.fail("steps", "must be at least 1; write the number of steps");
-  run.relax = table.count("relax", 0);
+  run.relax = table.steps("relax", 0);
   table.finish();
   return run;
 }
 
 OutputScene read_output(const Fields& table) {
   OutputScene output;
-  output.sample = table.count("sample", output.sample);
+  output.sample = table.steps("sample", output.sample);
   if (output.sample == 0) table.fail("sample", "must be at least 1; write the steps between samples");
-  output.snapshot = table.count("snapshot", 0);
-  output.checkpoint = table.count("checkpoint", 0);
+  output.snapshot = table.steps("snapshot", 0);
+  output.checkpoint = table.steps("checkpoint", 0);
   output.solids = table.flag("solids", false);
   table.finish();
   return output;
@@ -190,13 +190,18 @@ Scene read_scene_text(const std::string& text, const std::string& name, const st
   return read_tree(parse_document(text, name, overrides), name);
 }
 
-Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
+std::string scene_file_text(const std::string& path) {
+  errno = 0;
   std::ifstream stream(path);
   std::ostringstream text;
-  if (!stream || std::filesystem::is_directory(path))
-    throw InputError(path, "scene", "", "cannot be read; check the path and its permissions");
   text << stream.rdbuf();
-  return read_scene_text(text.str(), path, overrides);
+  if (!stream || text.bad() || std::filesystem::is_directory(path))
+    throw InputError(path, "scene", "", "cannot be read; check the path and its permissions");
+  return text.str();
+}
+
+Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
+  return read_scene_text(scene_file_text(path), path, overrides);
 }
 
 }  // namespace mappm

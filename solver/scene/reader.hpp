@@ -15,4 +15,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
 /// The same from text; `name` stands for the file in messages.
 Scene read_scene_text(const std::string& text, const std::string& name, const std::vector<std::string>& overrides);
 
+/// The text of a scene file, which may be a pipe. Throws InputError where it cannot be read.
+std::string scene_file_text(const std::string& path);
+
 }  // namespace mappm

@@ -13,6 +13,9 @@
 
 namespace mappm {
 
+/// Steps beyond this are not counted: a double holds each number up to it.
+inline constexpr std::uint64_t most_steps = std::uint64_t{1} << 53;
+
 using Triple = std::array<double, 3>;  // the third entry is unused (0) in two dimensions
 
 enum class Units { dimensionless, si };

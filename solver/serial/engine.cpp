@@ -143,13 +143,11 @@ void SerialEngine<D>::sum_densities() {
   });
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     volume_[i] = volume_terms(density_[i], model_.rest_density, 1.0, model_.background);
-    if (!is_in_range(density_[i], model_.rest_density))
-      note(density_message(state_.step, particle_text(fluid.id[i]), density_[i] / model_.rest_density));
+    note_density(model_, {state_.step, FaultPlace::What::fluid_density, fluid.id[i]}, density_[i], fault_);
   }
   for (const FrozenInStep<D>& fp : frozen_)
-    if (!is_in_range(fp.density, model_.rest_density))
-      note(density_message(state_.step, frozen_text(state_.solids[fp.solid].id, fp.index),
-                           fp.density / model_.rest_density));
+    note_density(model_, {state_.step, FaultPlace::What::frozen_density, state_.solids[fp.solid].id, fp.index},
+                 fp.density, fault_);
 }
 
 /// What other PPs and the FPs give to the density of PP i; an FP gets as much from the PP.
@@ -297,7 +295,8 @@ void SerialEngine<D>::move_fluid() {
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     Vec<D, double> x = position(fluid, i), v = velocity(fluid, i);
     const RangeFault fault = advance(x, v, sums_[i], constants);
-    if (fault != RangeFault::none) note(range_message(fault, state_.step, fluid.id[i], v, sums_[i]));
+    if (fault != RangeFault::none)
+      note_motion(fault, {state_.step, FaultPlace::What::fluid_motion, fluid.id[i]}, v, sums_[i], fault_);
     for (int axis = 0; axis < D; ++axis) {
       fluid.x(axis)[i] = wrap_position(x[axis]);
       fluid.v(axis)[i] = v[axis];
@@ -320,7 +319,9 @@ void SerialEngine<D>::move_solids() {
       add_face_contacts(model_, bodies_[a], loads[a]);
     }
   for (std::size_t a = 0; a < state_.solids.size(); ++a) {
-    note(finish_step(model_, state_.step, state_.solids[a], std::move(loads[a]), state_.outside_impulse));
+    Solid<D>& solid = state_.solids[a];
+    fault_.note({state_.step, FaultPlace::What::solid_motion, solid.id},
+                finish_step(model_, state_.step, solid, std::move(loads[a]), state_.outside_impulse));
   }
 }
 

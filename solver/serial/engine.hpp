@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "particles/engine.hpp"
@@ -22,7 +21,7 @@ class SerialEngine {
   std::uint64_t present_step() const { return state_.step; }
   State<D>& state() { return state_; }
   Sample<D> sample();
-  const std::string& range_error() const { return range_error_; }
+  const FirstFault& first_fault() const { return fault_; }
   void trace_next_step(std::uint64_t particle) { traced_particle_ = particle; }
   const MaybeTrace<D>& last_trace() const { return trace_; }
   PhaseSeconds phase_seconds() const { return {{"pairs", pair_seconds_}, {"integrate", integrate_seconds_}}; }
@@ -35,9 +34,6 @@ class SerialEngine {
   std::int64_t density_of_fluid(const Numbers& numbers, std::size_t i);
   template <class Kernel>
   std::int64_t density_of_frozen(std::size_t k);
-  void note(const std::string& fault) {
-    if (range_error_.empty()) range_error_ = fault;
-  }
   PairPoint<D> point(std::size_t i) const;
   PairPoint<D> frozen_point(std::size_t k) const;
   template <class Kernel, bool transport, class Numbers, class Visit>
@@ -69,7 +65,7 @@ class SerialEngine {
   std::optional<std::uint64_t> traced_particle_;  // in the next step
   MaybeTrace<D> trace_;
 
-  std::string range_error_;
+  FirstFault fault_;
   double pair_seconds_ = 0.0, integrate_seconds_ = 0.0;
 };
 

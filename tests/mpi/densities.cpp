@@ -76,7 +76,7 @@ void expect_samples_of_the_serial_engine(const std::string& scene, const std::ve
       serial.step();
       engine.step();
     }
-    EXPECT_EQ(engine.range_error(), "");
+    EXPECT_EQ(engine.first_fault().text(), "");
     EXPECT_EQ(total(digest_share(engine.state())), digest_share(serial.state()));
   }
 }

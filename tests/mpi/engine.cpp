@@ -58,7 +58,7 @@ Reference<D> run_serial(const Built<D>& built, int steps) {
       for (const Solid<D>& solid : engine.state().solids) reference.events.contacts += solid.contacts.size();
       if (step % every == 0) look();
     }
-    EXPECT_EQ(engine.range_error(), "");
+    EXPECT_EQ(engine.first_fault().text(), "");
   }
   std::vector<std::uint64_t> shared(static_cast<std::size_t>(steps / every) + 1, 0);
   std::copy(reference.digests.begin(), reference.digests.end(), shared.begin());
@@ -90,7 +90,7 @@ void expect_digests(const Built<D>& built, const Domains<D>& domains, const Para
     expect_ledger(engine.state(), start);
     for (int step = 0; step < every && n + 1 < digests.size(); ++step) engine.step();
   }
-  EXPECT_EQ(engine.range_error(), "");
+  EXPECT_EQ(engine.first_fault().text(), "");
 }
 
 /// The same without a look at the state before the end: the PPs stay as long as they can. On one process in `ending`
@@ -109,7 +109,7 @@ void expect_digest_after_stays(const Built<D>& built, const Domains<D>& domains,
     EXPECT_LT(engine.orderings(), static_cast<unsigned>(steps < 100 ? steps * 9 / 10 : steps * 2 / 3));
   }
   EXPECT_EQ(total(digest_share(engine.state())), digests.back());
-  EXPECT_EQ(engine.range_error(), "");
+  EXPECT_EQ(engine.first_fault().text(), "");
 }
 
 /// All grids that this number of processes allows, over all steps; on one of them also two threads, and borders that
@@ -233,7 +233,7 @@ TEST(ParallelEngine, reports_a_value_out_of_range_and_goes_on) {
     const std::string named = "step 0: particle " + std::to_string(state.fluid.id[k]) + ": moves more than rcut/4";
     ParallelEngine<2> engine(built.model, domains, world(), std::move(state), {});
     engine.step();
-    const bool reported = engine.range_error().find(named) != std::string::npos;
+    const bool reported = engine.first_fault().text().find(named) != std::string::npos;
     EXPECT_EQ(total(reported ? 1 : 0), 1u);
   }
 }
@@ -246,7 +246,7 @@ TEST(ParallelEngine, reports_a_solid_out_of_range_on_its_owner_and_goes_on) {
     if (solid.id == 2) solid.momentum[0] *= 1000;
   ParallelEngine<2> engine(built.model, domains, world(), std::move(state), {});
   for (int step = 0; step < 3; ++step) engine.step();
-  const bool reported = engine.range_error().find("step 0: solid 2: a point of it moves more than rcut/4") == 0;
+  const bool reported = engine.first_fault().text().find("step 0: solid 2: a point of it moves more than rcut/4") == 0;
   EXPECT_EQ(total(reported ? 1 : 0), 1u);
   EXPECT_EQ(total(engine.state().solids.size()), 16u);
 }

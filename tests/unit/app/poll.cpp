@@ -15,8 +15,16 @@ namespace {
 using testing_tools::refusal;
 using testing_tools::ThreadGroup;
 
+const FirstFault none;
+
+FirstFault fault_of(const FaultPlace& place, const std::string& text) {
+  FirstFault fault;
+  fault.note(place, text);
+  return fault;
+}
+
 TEST(StopSignal, raises_a_flag_and_nothing_else) {
-  for (const int number : {SIGTERM, SIGINT}) {
+  for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU}) {
     stop_signal = 0;
     watch_stop_signals();
     EXPECT_FALSE(stop_requested());
@@ -27,50 +35,77 @@ TEST(StopSignal, raises_a_flag_and_nothing_else) {
   stop_signal = 0;
 }
 
+TEST(StopSignal, leaves_a_hangup_alone_that_is_ignored) {
+  stop_signal = 0;
+  std::signal(SIGHUP, SIG_IGN);  // as nohup does
+  watch_stop_signals();
+  std::raise(SIGHUP);
+  EXPECT_FALSE(stop_requested());
+  for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU}) std::signal(number, SIG_DFL);
+}
+
 TEST(Poll, tells_of_a_signal_once_it_has_come) {
   const SingleGroup group;
   Poll poll(group, 0);
-  EXPECT_FALSE(poll.agree_to_stop(1, 0.0));
+  EXPECT_FALSE(poll.agree_to_stop(1, 0.0, none));
   stop_signal = SIGTERM;
-  EXPECT_TRUE(poll.agree_to_stop(2, 0.0));
+  EXPECT_TRUE(poll.agree_to_stop(2, 0.0, none));
   stop_signal = 0;
 }
 
 TEST(Poll, waits_half_a_second_but_at_most_twenty_steps) {
   const SingleGroup group;
   Poll poll(group, 0);
-  poll.agree_to_stop(100, 0.1);
+  poll.agree_to_stop(100, 0.1, none);
   EXPECT_FALSE(poll.due(104));
   EXPECT_TRUE(poll.due(105));
-  poll.agree_to_stop(200, 1e-6);
+  poll.agree_to_stop(200, 1e-6, none);
   EXPECT_FALSE(poll.due(219));
   EXPECT_TRUE(poll.due(220));
-  poll.agree_to_stop(300, 60.0);
+  poll.agree_to_stop(300, 60.0, none);
   EXPECT_TRUE(poll.due(301));
 }
 
 TEST(Poll, agrees_on_the_shortest_wait) {
   ThreadGroup(2).run([](const Group& group) {
     Poll poll(group, 0);
-    poll.agree_to_stop(10, group.is_first() ? 1e-6 : 0.25);
+    poll.agree_to_stop(10, group.is_first() ? 1e-6 : 0.25, none);
     EXPECT_FALSE(poll.due(11));
     EXPECT_TRUE(poll.due(12));
   });
 }
 
-TEST(Poll, gives_the_earliest_range_error_to_all) {
-  std::atomic<int> seen = 0;
-  ThreadGroup(3).run([&](const Group& group) {
-    Poll poll(group, 0);
-    if (group.rank() == 0) poll.note(9, "followed");
-    if (group.rank() == 2) {
-      poll.note(7, "");
-      poll.note(8, "first");
-      poll.note(9, "first and more");
-    }
-    seen += refusal<RangeError>([&] { poll.agree_to_stop(10, 0.0); }) == "first";
-  });
-  EXPECT_EQ(seen, 3);
+TEST(Poll, gives_the_first_fault_of_all_to_all) {
+  using What = FaultPlace::What;
+  // The lowest step; then what a step looks at first; then the lowest id; then the lowest FP.
+  const FaultPlace places[][3] = {
+      {{9, What::fluid_motion, 0, 0}, {}, {8, What::fluid_motion, 5, 0}},
+      {{8, What::solid_motion, 0, 0}, {8, What::fluid_motion, 3, 0}, {8, What::frozen_density, 5, 7}},
+      {{8, What::solid_motion, 2, 0}, {8, What::solid_motion, 1, 0}, {8, What::solid_motion, 0, 0}},
+      {{8, What::frozen_density, 2, 4}, {}, {8, What::frozen_density, 2, 3}},
+  };
+  for (const auto& place : places) {
+    std::atomic<int> seen = 0;
+    ThreadGroup(3).run([&](const Group& group) {
+      const FaultPlace& mine = place[group.rank()];
+      const FirstFault fault = mine.step == 0 ? none : fault_of(mine, group.rank() == 2 ? "first" : "later");
+      seen += refusal<RangeError>([&] { Poll(group, 0).agree_to_stop(10, 0.0, fault); }) == "first";
+    });
+    EXPECT_EQ(seen, 3);
+  }
+}
+
+TEST(FirstFault, keeps_the_first_whatever_the_order_of_their_coming) {
+  using What = FaultPlace::What;
+  FirstFault fault;
+  EXPECT_FALSE(fault.any());
+  fault.note({7, What::fluid_density, 1, 0}, "");
+  EXPECT_FALSE(fault.any()) << "an empty text is none";
+  fault.note({7, What::solid_motion, 4, 0}, "solid 4");
+  fault.note({7, What::solid_motion, 2, 0}, "solid 2");
+  fault.note({7, What::solid_motion, 3, 0}, "solid 3");
+  fault.note({8, What::fluid_density, 0, 0}, "a step later");
+  EXPECT_EQ(fault.text(), "solid 2");
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ class ToyRun : public testing::Test {
   /// What the program would do: from step 0, or from the newest checkpoint.
   Start<2> start() {
     if (!options_.resume.empty()) return start_run<2>(scene_, model_, Region<2>::whole_box(), options_, group_);
-    Start<2> start;
+    Start<2> start{RunFolder(options_.output_folder(scene_.name), entry_of(options_), group_)};
     hand::add_pp(start.state, 0, {{0.25, 0.25}}, {});
     hand::add_pp(start.state, 1, {{0.75, 0.25}}, {});
     return start;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <csignal>
-#include <string>
 #include <vector>
 
 #include "particles/engine.hpp"
@@ -21,13 +20,14 @@ class ToyEngine {
     state_.outside_impulse[0] +=
         static_cast<Int128>(state_.fluid.size()) * static_cast<Int128>(kick / velocity_quantum);
     ++state_.step;
-    if (state_.step == bad_step) error_ = "step 7: particle 1: v = 99: too fast";
+    if (state_.step == bad_step)
+      fault_.note({bad_step - 1, FaultPlace::What::fluid_motion, 1}, "step 7: particle 1: v = 99: too fast");
     if (state_.step == signal_step) std::raise(SIGTERM);
   }
   std::uint64_t present_step() const { return state_.step; }
   State<2>& state() { return state_; }
   Sample<2> sample() { return {state_, {std::vector<double>(state_.fluid.size(), 8.0), {}}}; }
-  const std::string& range_error() const { return error_; }
+  const FirstFault& first_fault() const { return fault_; }
   PhaseSeconds phase_seconds() const { return {{"toy", 0.5}}; }
   void trace_next_step(std::uint64_t particle) { trace_ = StepTrace<2>{state_.step, particle, {}}; }
   const MaybeTrace<2>& last_trace() const { return trace_; }
@@ -36,7 +36,7 @@ class ToyEngine {
 
  private:
   State<2> state_;
-  std::string error_;
+  FirstFault fault_;
   MaybeTrace<2> trace_;
 };
 

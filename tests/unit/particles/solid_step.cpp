@@ -282,12 +282,24 @@ TEST(FinishStep, a_solid_that_moves_too_far_stays_and_is_reported) {
   EXPECT_TRUE(fast.momentum == before.momentum);
 }
 
-TEST(DensityMessage, names_step_place_value_and_cause) {
+using What = FaultPlace::What;
+
+/// What is noted of a density, in units of that at rest.
+std::string density_fault(const FaultPlace& place, double ratio) {
+  const Model<2> model = hand_model<2>();
+  FirstFault fault;
+  note_density(model, place, ratio * model.rest_density, fault);
+  return fault.text();
+}
+
+TEST(DensityFault, names_step_place_value_and_cause) {
   EXPECT_EQ(
-      density_message(3, frozen_text(4, 1), 0.05),
+      density_fault({3, What::frozen_density, 4, 1}, 0.05),
       "step 3: solid 4, frozen particle 1: density 0.05 times rest, outside 0.1 to 10; the fluid tears or collapses "
       "there: raise the sound speed or resolve the gap");
-  EXPECT_EQ(density_message(12, particle_text(345), 15.0).find("step 12: particle 345: density 15 times rest"), 0u);
+  EXPECT_EQ(density_fault({12, What::fluid_density, 345}, 15.0).find("step 12: particle 345: density 15 times rest"),
+            0u);
+  EXPECT_EQ(density_fault({12, What::fluid_density, 345}, 9.0), "");
 }
 
 TEST(ParticleStepConstants, by_hand) {
@@ -306,18 +318,24 @@ TEST(ParticleStepConstants, by_hand) {
   EXPECT_EQ(step.outer, 3.5);
 }
 
-TEST(RangeMessage, names_step_particle_value_and_cause) {
+std::string motion_fault(RangeFault what, const Vec<2, double>& v, const NeighbourSums<2>& sums) {
+  FirstFault fault;
+  note_motion(what, {12, What::fluid_motion, 345}, v, sums, fault);
+  return fault.text();
+}
+
+TEST(MotionFault, names_step_particle_value_and_cause) {
   NeighbourSums<2> sums{};
   sums.impulse = {{5, -(std::int64_t{1} << 51)}};  // the larger of the two is named
   EXPECT_EQ(
-      range_message<2>(RangeFault::impulse, 12, 345, {}, sums),
+      motion_fault(RangeFault::impulse, {}, sums),
       "step 12: particle 345: impulse -8 m c is too large for its fixed-point range; particles overlap or the step "
       "is too long");
   EXPECT_EQ(
-      range_message<2>(RangeFault::displacement, 12, 345, {{3.0, 4.0}}, sums),
+      motion_fault(RangeFault::displacement, {{3.0, 4.0}}, sums),
       "step 12: particle 345: moves more than rcut/4 in one step (velocity 5 c before it); the step is too long or "
       "the sound speed too low");
-  EXPECT_EQ(range_message<2>(RangeFault::none, 12, 345, {}, sums), "");
+  EXPECT_EQ(motion_fault(RangeFault::none, {}, sums), "");
 }
 
 }  // namespace

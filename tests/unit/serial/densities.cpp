@@ -114,7 +114,7 @@ void expect_densities_in_both_precisions(const std::string& scene) {
         expect_densities_of_a_double_loop<D, Kernel, SinglePairs<D>>(built, engine.sample());
       else
         expect_densities_of_a_double_loop<D, Kernel, DoublePairs<D>>(built, engine.sample());
-      EXPECT_EQ(engine.range_error(), "");
+      EXPECT_EQ(engine.first_fault().text(), "");
     }
   }
 }
