@@ -12,7 +12,7 @@ namespace mappm {
 /// A file that a run will write, and how long it will be.
 struct ExpectedFile {
   std::filesystem::path path;
-  std::uint64_t bytes = 0;
+  std::uint64_t bytes = 0;  // of its content
 };
 
 /// Collective. Makes the files half written, by all processes together, asks the disk for the room of all at once, and

@@ -127,6 +127,41 @@ def test_a_run_that_leaves_its_range_says_so_once(tmp_path: Path, ranks: int) ->
     assert not list((tmp_path / "out").glob("snapshots/*"))
 
 
+# Four discs that move at once more than rcut / 4 in their first step; on several processes the first is not on the first.
+THROWN = """
+name = "thrown"
+units = "dimensionless"
+box.size = [4.0, 4.0]
+fluid = { density = 1.0, viscosity = 0.05, spacing = 0.0625, sound_speed = 10.0 }
+run.steps = 100
+[[body]]
+shape = "disc"
+radius = 0.25
+density = 3.0
+positions = [[0.5, 3.5], [3.5, 3.4], [0.5, 0.5], [3.5, 0.6]]
+velocity = [0.0, 8.0]
+"""
+
+
+@pytest.mark.parametrize("ranks", [0, 1, 2, 3])
+def test_the_first_fault_is_the_same_on_any_number_of_processes(tmp_path: Path, ranks: int) -> None:
+    scene = tmp_path / "thrown.toml"
+    scene.write_text(THROWN)
+    code, _, stderr = end_of(scene, tmp_path / "out", Options(ranks=ranks))
+    (error,) = errors_in(stderr)
+    assert code == 3
+    assert error.startswith("error: step 0: solid 0: a point of it moves more than rcut/4")
+
+
+@pytest.mark.parametrize("ranks", RANKS)
+def test_a_scene_may_come_through_a_pipe(tmp_path: Path, ranks: int) -> None:
+    line = Options(ranks=ranks, steps=20).command(Path("/dev/stdin"), tmp_path / "piped")
+    piped = subprocess.run(line, env=os.environ | MPI_ENVIRONMENT, input=SCENE.read_text(), capture_output=True, text=True)
+    assert piped.returncode == 0, piped.stderr
+    through = run(SCENE, tmp_path / "file", Options(ranks=1, steps=20))
+    assert through.record["digest"] in piped.stdout.splitlines()[-1]
+
+
 @pytest.mark.parametrize("ranks", RANKS)
 @pytest.mark.parametrize(
     ("words", "message"),

@@ -21,6 +21,7 @@ INPUT = 2
 RANKS = (0, 1, 2, 3)
 END = 120
 KILOBYTE = 1024
+LAST_FILES = 420  # kilobytes: room for the last snapshot and a checkpoint, and a little more
 
 
 @dataclass(frozen=True)
@@ -96,22 +97,21 @@ def through(tmp_path_factory: pytest.TempPathFactory) -> Run:
 
 @pytest.mark.parametrize("ranks", RANKS)
 @pytest.mark.parametrize(
-    ("outputs", "resumes", "room", "named"),
+    ("outputs", "steps", "room", "named"),
     [
-        (("output.checkpoint=20",), True, 16, "checkpoints/checkpoint_000000060.h5"),
-        (("output.snapshot=20",), True, 16, "snapshots/fluid_000000060.vtkhdf"),
-        (("output.sample=1",), True, 16, "series.csv"),
-        ((), False, 0, "run.json"),  # from the start: the table, begun anew, has the room of the one before
+        ((), END, 16, "snapshots/solids_000000120.vtkhdf"),  # tried before the first step
+        (("output.snapshot=5",), END, LAST_FILES, "snapshots/fluid_"),  # there was room for the last one
+        (("output.sample=1",), 1_000_000, LAST_FILES, "series.csv"),
     ],
 )
 def test_a_full_disk_names_the_file_and_leaves_the_others(
-    disk: Disk, through: Run, ranks: int, outputs: tuple[str, ...], resumes: bool, room: int, named: str
+    disk: Disk, through: Run, ranks: int, outputs: tuple[str, ...], steps: int, room: int, named: str
 ) -> None:
     out = disk.folder / "out"
     kept = begun(out)
     disk.fill(room * KILOBYTE)
     overrides = ("output.solids=false", "output.sample=1000", *outputs)
-    options = Options(ranks=ranks, steps=END, overrides=overrides, resume=out if resumes else None)
+    options = Options(ranks=ranks, steps=steps, overrides=overrides, resume=out)
     error = refused(options, out)
     assert f"{out}/{named}" in error  # or its name with .partial behind
     assert "No space left" in error or "KiB are left on its disk" in error
@@ -126,7 +126,7 @@ def test_a_folder_that_may_not_be_written_is_named(disk: Disk, through: Run, ran
     kept = begun(out)
     disk.remount("ro")
     try:
-        assert f"{out}/series.csv" in refused(Options(ranks=ranks, steps=END, resume=out), out)
+        assert f"{out}/run.lock" in refused(Options(ranks=ranks, steps=END, resume=out), out)
         assert f"{disk.folder}/new" in refused(Options(ranks=ranks, steps=END), disk.folder / "new")
         assert_whole(out, kept)
     finally:

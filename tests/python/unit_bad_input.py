@@ -4,6 +4,7 @@ mend, 3 for a run that left the range of its numbers.
 Oracle: the rule that a message names file, key, value and fix.
 """
 
+import json
 import os
 import subprocess
 from pathlib import Path
@@ -142,10 +143,24 @@ def test_the_command_line_is_checked_too(tmp_path: Path) -> None:
     for words in ([], ["walk"], ["run"], ["run", str(SCENE), "--speed", "3"], ["run", str(SCENE), "--threads", "0"],
                   ["run", str(SCENE), "--steps", "-5"], ["run", str(SCENE), "--rebalance", "-1"],
                   ["run", str(SCENE), "--isa", "sse2"], ["run", str(SCENE), "--trace", "7"], ["run", str(SCENE), "--trace", "7@-1"],
-                  ["run", str(SCENE), "--trace", "7@20", "--steps", "20"]):
+                  ["run", str(SCENE), "--trace", "7@20", "--steps", "20"], ["run", str(SCENE), "--resume", "x", "--overwrite"],
+                  ["run", str(SCENE), "--steps", "0x10"], ["run", str(SCENE), "--steps", "99999999999999999999"],
+                  ["run", str(SCENE), "--steps", ""], ["run", str(SCENE), "--rebalance", "18446744073709551616"],
+                  ["run", str(SCENE), "--threads", "257"], ["run", str(SCENE), "--domains", "1x99999999999"],
+                  ["run", str(SCENE), "--domains", ""], ["run", str(SCENE), "--out", ""], ["run", str(SCENE), "--resume", ""],
+                  ["run", str(SCENE), "--isa", ""], ["run", str(SCENE), "--set", ""], ["run", ""]):
         finished = subprocess.run([program("mappm"), *words], cwd=tmp_path, capture_output=True, text=True)
         assert finished.returncode == INPUT
         assert finished.stderr.strip()
+        assert not list(tmp_path.iterdir()), words
+
+
+def test_numbers_are_decimal(tmp_path: Path) -> None:
+    line = [program("mappm"), "run", str(SCENE), "--steps", "010", "--threads", "02", "--out", str(tmp_path)]
+    subprocess.run(line, check=True, capture_output=True)
+    record = json.loads((tmp_path / "run.json").read_text())
+    assert (record["steps"], record["threads"]) == (10, 2)
+
 
 
 def with_checkpoint(folder: Path) -> Path:
@@ -182,16 +197,15 @@ def test_a_full_disk_leaves_the_checkpoint_before_it(tmp_path: Path) -> None:
     older = with_checkpoint(tmp_path)
     kept = older.read_bytes()
     overrides = ("output.checkpoint=50",)
-    # No file may grow beyond half a checkpoint: to the program that is a disk without space.
+    # No file may grow beyond half a checkpoint, as on a disk without space: that is seen before the first step.
     options = Options(ranks=0, steps=150, overrides=overrides, resume=older)
     finished = subprocess.run(
         ["prlimit", f"--fsize={len(kept) // 2}", *options.command(SCENE, tmp_path)],
         capture_output=True,
         text=True,
-        restore_signals=False,  # which leaves SIGXFSZ ignored, so that the write fails instead
     )
     message = only_error(finished, INPUT)
-    assert "checkpoint_000000100" in message
+    assert "000000150" in message and "File too large" in message
     assert [path.name for path in (tmp_path / "checkpoints").iterdir()] == [older.name]
     assert older.read_bytes() == kept
     resumed = run(SCENE, tmp_path, Options(steps=100, overrides=overrides, resume=older))

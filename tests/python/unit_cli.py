@@ -122,7 +122,11 @@ def fluid_velocity(finished: Run, step: int) -> float:
     return float(series["fluid_velocity_y"][-1])
 
 
-@pytest.mark.parametrize(("ranks", "number"), [(0, signal.SIGTERM), (1, signal.SIGINT), (2, signal.SIGTERM)])
+SIGNALS = [(0, signal.SIGTERM), (1, signal.SIGINT), (2, signal.SIGTERM), (1, signal.SIGHUP), (0, signal.SIGUSR1),
+           (1, signal.SIGUSR2), (1, signal.SIGXCPU)]
+
+
+@pytest.mark.parametrize(("ranks", "number"), SIGNALS)
 def test_a_signal_leaves_a_checkpoint_to_go_on_from(tmp_path: Path, ranks: int, number: signal.Signals) -> None:
     endless = Options(ranks=ranks, steps=10_000_000, overrides=("output.sample=10",))
     process = subprocess.Popen(
@@ -156,7 +160,7 @@ def test_the_judge_lists_and_runs_cases(tmp_path: Path) -> None:
     assert judged.returncode == 0, judged.stderr
     assert judged.stdout.splitlines() == [
         "max(|v|) / c = 0 +- 0 (reference 0 +- 0, error 0, CORRECT by goal 0)",
-        "mass and momentum: EXACT at 1 samples of 1 runs",
+        "mass and momentum: EXACT at 2 samples of 1 runs",
     ]
     assert verification("run", "nothing").returncode != 0
 

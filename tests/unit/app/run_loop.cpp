@@ -36,11 +36,11 @@ class ToyRun : public testing::Test {
     options_.scene = "toy.toml";
     options_.out = folder_.path().string();
     options_.quiet = true;
+    options_.overwrite = true;
   }
   ~ToyRun() override {
     stop_signal = 0;
-    std::signal(SIGTERM, SIG_DFL);
-    std::signal(SIGINT, SIG_DFL);
+    for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU}) std::signal(number, SIG_DFL);
   }
 
   /// What the program would do: from step 0, or from the newest checkpoint.
@@ -52,11 +52,12 @@ class ToyRun : public testing::Test {
     return start;
   }
   /// Runs and returns what was printed on standard output.
-  std::string run(std::uint64_t bad_step = 0, std::uint64_t signal_step = 0) {
+  std::string run(std::uint64_t bad_step = 0, std::uint64_t signal_step = 0, std::uint64_t full_step = 0) {
     Start<2> begin = start();
     ToyEngine engine(std::move(begin.state));
     engine.bad_step = bad_step;
     engine.signal_step = signal_step;
+    engine.full_step = full_step;
     const RunSetup<2> setup{scene_, model_, group_, options_, begin, limits_, "toy", {}};
     testing::internal::CaptureStdout();
     try {
@@ -139,6 +140,40 @@ TEST_F(ToyRun, writes_what_the_scene_asks_for_when_it_asks) {
   EXPECT_TRUE(fs::exists(folder_ / "solids.csv"));
 }
 
+TEST_F(ToyRun, ends_its_tables_with_the_last_state) {
+  scene_.output.sample = 5;
+  run();
+  const std::string through = series();
+  EXPECT_TRUE(contains(through, "\n10,") && contains(through, "\n12,")) << through;
+  EXPECT_TRUE(contains(through.substr(through.rfind("\n12,")), record()["digest"]));
+
+  scene_.output.checkpoint = 100;  // the last step only
+  options_.steps = 7;
+  run();
+  EXPECT_TRUE(contains(series(), "\n7,")) << series();
+  options_.resume = options_.out;
+  run();
+  EXPECT_TRUE(contains(series(), "\n7,")) << "resumed for no step at all: " << series();
+  options_.steps.reset();
+  run();
+  EXPECT_EQ(series(), through) << "the row of step 7 is none of a run that goes on";
+}
+
+TEST_F(ToyRun, tries_its_last_files_before_its_first_step) {
+  const testing_tools::SmallDisk disk(2500);
+  EXPECT_TRUE(contains(refusal<InputError>([&] { run(); }), "snapshots/solids_000000012.vtkhdf.partial"));
+  EXPECT_TRUE(fs::is_empty(folder_.path())) << "nothing is left of the attempt";
+}
+
+TEST_F(ToyRun, refuses_a_folder_that_holds_a_run) {
+  run();
+  const std::string before = series();
+  options_.overwrite = false;
+  const std::string message = refusal<InputError>([&] { run(); });
+  EXPECT_TRUE(contains(message, "--out = " + options_.out) && contains(message, "--overwrite")) << message;
+  EXPECT_EQ(series(), before);
+}
+
 TEST_F(ToyRun, resumed_leaves_the_files_of_one_that_was_not_interrupted) {
   run();
   const std::string through = series();
@@ -187,8 +222,7 @@ TEST_F(ToyRun, that_left_its_range_writes_nothing_of_it) {
 }
 
 TEST_F(ToyRun, says_in_its_record_that_it_could_not_write) {
-  const testing_tools::SmallDisk disk(2500);  // enough for the series and the record, not for a snapshot
-  EXPECT_TRUE(contains(refusal<InputError>([&] { run(); }), "fluid_000000012.vtkhdf"));
+  EXPECT_TRUE(contains(refusal<InputError>([&] { run(0, 0, 1); }), "fluid_000000012.vtkhdf"));
   EXPECT_EQ(record()["state"], "input error");
   EXPECT_TRUE(contains(series(), "\n8,"));
 }

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <csignal>
+#include <optional>
 #include <vector>
 
 #include "particles/engine.hpp"
 #include "particles/model.hpp"
+#include "unit/output/small_disk.hpp"
 
 namespace mappm::testing_tools {
 
@@ -23,6 +25,7 @@ class ToyEngine {
     if (state_.step == bad_step)
       fault_.note({bad_step - 1, FaultPlace::What::fluid_motion, 1}, "step 7: particle 1: v = 99: too fast");
     if (state_.step == signal_step) std::raise(SIGTERM);
+    if (state_.step == full_step) disk_.emplace(2500);  // enough for the series and the record, not for a snapshot
   }
   std::uint64_t present_step() const { return state_.step; }
   State<2>& state() { return state_; }
@@ -32,12 +35,13 @@ class ToyEngine {
   void trace_next_step(std::uint64_t particle) { trace_ = StepTrace<2>{state_.step, particle, {}}; }
   const MaybeTrace<2>& last_trace() const { return trace_; }
 
-  std::uint64_t bad_step = 0, signal_step = 0;  // 0: never
+  std::uint64_t bad_step = 0, signal_step = 0, full_step = 0;  // 0: never
 
  private:
   State<2> state_;
   FirstFault fault_;
   MaybeTrace<2> trace_;
+  std::optional<SmallDisk> disk_;
 };
 
 }  // namespace mappm::testing_tools
