@@ -88,7 +88,7 @@ int main(int argc, char** argv) try {
     add_text(command, "--domains", domain_options.grid,
              "domains along x, y(, z), as in 2x4 (default: slabs along the longest side, of equal ones the last)");
     add_whole_number(command, "--threads", domain_options.engine.threads, 1, 256, "threads a process (default: 1)");
-    add_whole_number(command, "--rebalance", domain_options.engine.rebalance, 0, most_steps,
+    add_whole_number(command, "--rebalance", domain_options.engine.rebalance, 0, last_countable_step,
                      "steps between moves of the domain borders to the particle load (default: at start only)");
     command.add_flag("--faces", domain_options.faces,
                      "write to faces.csv, at every sample, the impulse that each domain received from each other");

@@ -113,7 +113,8 @@ MemoryNeed memory_need(const Scene& scene, const ParticleBytes& bytes) {
 
 double memory_left(int processes, const fs::path& root) {
   constexpr int size_column = 0, data_column = 5;
-  const double own = std::min(left_of_limit(RLIMIT_AS, size_column, root), left_of_limit(RLIMIT_DATA, data_column, root));
+  const double own =
+      std::min(left_of_limit(RLIMIT_AS, size_column, root), left_of_limit(RLIMIT_DATA, data_column, root));
   return std::min(own, std::min(left_of_groups(root), left_of_machine(root)) / processes);
 }
 

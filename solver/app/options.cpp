@@ -75,7 +75,7 @@ std::string RunOptions::repeated() const {
 
 void add_run_options(CLI::App& command, RunOptions& options) {
   add_text(command, "scene", options.scene, "scene to run (TOML)")->required();
-  add_whole_number(command, "--steps", options.steps, 0, most_steps,
+  add_whole_number(command, "--steps", options.steps, 0, last_countable_step,
                    "run until this step, counted from the very start of the scene");
   add_text(command, "--out", options.out, "output folder (default: out/<scene name>)");
   CLI::Option* const resume = add_text(command, "--resume", options.resume,

@@ -150,7 +150,9 @@ void RunLoop<D, E>::begin() {
   const auto& [scene, model, group, options, start, limits, program, warnings, memory, program_options, domains,
                threads, faces] = setup_;
   check_trace();
-  start.folder.open(scene.text, group);
+  remember(measure(model, engine_.sample(), group));
+  try_last_files();
+  start.folder.open(scene.text, group);  // from here on what was there before is replaced
   record_.program = program;
   record_.instruction_set = instruction_set;
   record_.scene_file = scene.file;
@@ -167,8 +169,6 @@ void RunLoop<D, E>::begin() {
   record_.domains = domains;
 
   const UnitNames units = scene.units == Units::si ? si_unit_names(D) : UnitNames{};
-  remember(measure(model, engine_.sample(), group));
-  try_last_files();
   // The last row of the run before may stand beyond its last sample: it is no row of the run that goes on.
   const auto kept = start.resumed_step.has_value() ? std::optional(start.sampled_step) : std::nullopt;
   series_.emplace(folder_, model, units, group, kept);

@@ -1,5 +1,5 @@
-// Signals that ask a run to write a checkpoint and to end: of a person (SIGINT), of a system that goes down (SIGTERM), of a
-// terminal that is gone (SIGHUP), of a batch system whose time is up (SIGUSR1, SIGUSR2, SIGXCPU).
+// Signals that ask a run to write a checkpoint and to end: of a person (SIGINT), of a system that goes down (SIGTERM),
+// of a terminal that is gone (SIGHUP), of a batch system whose time is up (SIGUSR1, SIGUSR2, SIGXCPU).
 #pragma once
 
 #include <csignal>

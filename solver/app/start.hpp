@@ -62,7 +62,7 @@ std::uint64_t last_step(const Scene& scene, const Model<D>& model, const RunOpti
   if (scene.run.steps > 0) return scene.run.relax + scene.run.steps;
   // A duration of a whole number of steps may come out a rounding error above it.
   const double steps = scene.run.duration / (model.dt * model.units.time());
-  if (steps > static_cast<double>(most_steps))
+  if (steps > static_cast<double>(last_countable_step))
     throw InputError(scene.file, "run.duration", fmt::format("{}", scene.run.duration),
                      fmt::format("is {:.3g} steps, more than can be counted; shorten it", steps));
   return scene.run.relax + static_cast<std::uint64_t>(std::ceil(steps * (1.0 - 1e-12)));

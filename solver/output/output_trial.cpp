@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t header_bytes = 1 << 16;  // of the library
 
-/// Its length is tried as well as its room: files may be limited in the one and disks in the other. A disk that says how
-/// little it has is not filled in vain.
+/// Its length is tried as well as its room: files may be limited in the one and disks in the other. A disk that says
+/// how little it has is not filled in vain.
 void try_room(const fs::path& path, std::uint64_t bytes) {
   std::error_code failed;
   const fs::space_info space = fs::space(path, failed);

@@ -15,15 +15,16 @@ class RunFolder {
   enum class Entry { refuse, resume, overwrite };
 
   /// Collective. Makes the folder and locks it for as long as this object lives, and no longer than the process of the
-  /// first rank does. Throws InputError where that cannot be done, where another run is at work in the folder, and where
-  /// it holds what the entry refuses. A folder that was made here and is empty at the end is removed.
+  /// first rank does. Throws InputError where that cannot be done, where another run is at work in the folder, and
+  /// where it holds what the entry refuses. A folder that was made here and is empty at the end is removed.
   RunFolder(std::filesystem::path path, Entry entry, const Group& group);
   RunFolder(RunFolder&&) noexcept;
   RunFolder& operator=(RunFolder&&) noexcept;
   ~RunFolder();
 
-  /// Collective. To be called before anything is written: with `overwrite` removes what an earlier run left, and nothing
-  /// else. Throws InputError where a resumed run is of another scene than the one whose output the folder holds.
+  /// Collective. To be called before anything is written: with `overwrite` removes what an earlier run left, and
+  /// nothing else. Throws InputError where a resumed run is of another scene than the one whose output the folder
+  /// holds.
   void open(const std::string& scene_text, const Group& group) const;
 
   const std::filesystem::path& path() const { return path_; }

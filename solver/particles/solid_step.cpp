@@ -180,8 +180,8 @@ void note_density(const Model<D>& model, const FaultPlace& place, double density
   const std::string where = place.what == FaultPlace::What::frozen_density
                                 ? fmt::format("solid {}, frozen particle {}", place.id, place.index)
                                 : fmt::format("particle {}", place.id);
-  first.note(place, fmt::format("step {}: {}: density {:.3g} times rest, outside {} to {}; the fluid tears or collapses "
-                                "there: raise the sound speed or resolve the gap",
+  first.note(place, fmt::format("step {}: {}: density {:.3g} times rest, outside {} to {}; the fluid tears or "
+                                "collapses there: raise the sound speed or resolve the gap",
                                 place.step, where, density / model.rest_density, lowest_density_ratio,
                                 highest_density_ratio));
 }

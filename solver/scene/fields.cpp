@@ -123,7 +123,8 @@ std::uint64_t Fields::count(const std::string& key, std::optional<std::uint64_t>
 
 std::uint64_t Fields::steps(const std::string& key, std::optional<std::uint64_t> fallback) const {
   const std::uint64_t steps = count(key, fallback);
-  if (steps > most_steps) fail(key, fmt::format("is more steps than can be counted; write at most {}", most_steps));
+  if (steps > last_countable_step)
+    fail(key, fmt::format("is more steps than can be counted; write at most {}", last_countable_step));
   return steps;
 }
 

@@ -34,7 +34,7 @@ class Fields {
   double number(const std::string& key, Quantity quantity, Sign sign) const;
   double number(const std::string& key, Quantity quantity, Sign sign, double fallback) const;
   std::uint64_t count(const std::string& key, std::optional<std::uint64_t> fallback = {}) const;
-  /// A count of steps, at most `most_steps`.
+  /// A count of steps, at most `last_countable_step`.
   std::uint64_t steps(const std::string& key, std::optional<std::uint64_t> fallback = {}) const;
   bool flag(const std::string& key, bool fallback) const;
   std::string word(const std::string& key) const;

@@ -13,8 +13,8 @@
 
 namespace mappm {
 
-/// Steps beyond this are not counted: a double holds each number up to it.
-inline constexpr std::uint64_t most_steps = std::uint64_t{1} << 53;
+/// A double holds every number of a step up to this.
+inline constexpr std::uint64_t last_countable_step = std::uint64_t{1} << 53;
 
 using Triple = std::array<double, 3>;  // the third entry is unused (0) in two dimensions
 

@@ -127,7 +127,8 @@ def test_a_run_that_leaves_its_range_says_so_once(tmp_path: Path, ranks: int) ->
     assert not list((tmp_path / "out").glob("snapshots/*"))
 
 
-# Four discs that move at once more than rcut / 4 in their first step; on several processes the first is not on the first.
+# Four discs that move at once more than rcut / 4 in their first step. On several processes the first disc is not with
+# the first process.
 THROWN = """
 name = "thrown"
 units = "dimensionless"
@@ -156,7 +157,8 @@ def test_the_first_fault_is_the_same_on_any_number_of_processes(tmp_path: Path, 
 @pytest.mark.parametrize("ranks", RANKS)
 def test_a_scene_may_come_through_a_pipe(tmp_path: Path, ranks: int) -> None:
     line = Options(ranks=ranks, steps=20).command(Path("/dev/stdin"), tmp_path / "piped")
-    piped = subprocess.run(line, env=os.environ | MPI_ENVIRONMENT, input=SCENE.read_text(), capture_output=True, text=True)
+    environment = os.environ | MPI_ENVIRONMENT
+    piped = subprocess.run(line, env=environment, input=SCENE.read_text(), capture_output=True, text=True)
     assert piped.returncode == 0, piped.stderr
     through = run(SCENE, tmp_path / "file", Options(ranks=1, steps=20))
     assert through.record["digest"] in piped.stdout.splitlines()[-1]

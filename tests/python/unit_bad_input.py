@@ -143,11 +143,13 @@ def test_the_command_line_is_checked_too(tmp_path: Path) -> None:
     for words in ([], ["walk"], ["run"], ["run", str(SCENE), "--speed", "3"], ["run", str(SCENE), "--threads", "0"],
                   ["run", str(SCENE), "--steps", "-5"], ["run", str(SCENE), "--rebalance", "-1"],
                   ["run", str(SCENE), "--isa", "sse2"], ["run", str(SCENE), "--trace", "7"], ["run", str(SCENE), "--trace", "7@-1"],
-                  ["run", str(SCENE), "--trace", "7@20", "--steps", "20"], ["run", str(SCENE), "--resume", "x", "--overwrite"],
+                  ["run", str(SCENE), "--trace", "7@20", "--steps", "20"],
+                  ["run", str(SCENE), "--resume", "x", "--overwrite"],
                   ["run", str(SCENE), "--steps", "0x10"], ["run", str(SCENE), "--steps", "99999999999999999999"],
                   ["run", str(SCENE), "--steps", ""], ["run", str(SCENE), "--rebalance", "18446744073709551616"],
                   ["run", str(SCENE), "--threads", "257"], ["run", str(SCENE), "--domains", "1x99999999999"],
-                  ["run", str(SCENE), "--domains", ""], ["run", str(SCENE), "--out", ""], ["run", str(SCENE), "--resume", ""],
+                  ["run", str(SCENE), "--domains", ""], ["run", str(SCENE), "--out", ""],
+                  ["run", str(SCENE), "--resume", ""],
                   ["run", str(SCENE), "--isa", ""], ["run", str(SCENE), "--set", ""], ["run", ""]):
         finished = subprocess.run([program("mappm"), *words], cwd=tmp_path, capture_output=True, text=True)
         assert finished.returncode == INPUT

@@ -89,6 +89,7 @@ def test_a_folder_is_locked_while_its_run_lasts(tmp_path: Path, ranks: int) -> N
     table = (tmp_path / "series.csv").read_text().splitlines()
     steps = [int(row.partition(",")[0]) for row in table[1:]]
     assert steps == sorted(set(steps)), "rows of one run alone"
-    resumed = run(SCENE, tmp_path, Options(ranks=ranks, steps=steps[-1] + 20, overrides=ENDLESS.overrides, resume=tmp_path))
+    goes_on = Options(ranks=ranks, steps=steps[-1] + 20, overrides=ENDLESS.overrides, resume=tmp_path)
+    resumed = run(SCENE, tmp_path, goes_on)
     assert resumed.record["state"] == "finished"
     assert not (tmp_path / "run.lock").exists()

@@ -70,8 +70,8 @@ def test_a_scene_beyond_the_memory_is_refused_by_its_spacing(tmp_path: Path, ran
 def test_the_memory_foretold_is_about_what_is_taken(tmp_path: Path, ranks: int) -> None:
     def taken(spacing: float) -> float:
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
-        finished = call(Options(ranks=ranks, steps=1, overrides=(f"fluid.spacing={spacing}", f"fluid.rcut={3 * spacing}")),
-                        tmp_path)
+        overrides = (f"fluid.spacing={spacing}", f"fluid.rcut={3 * spacing}")
+        finished = call(Options(ranks=ranks, steps=1, overrides=overrides), tmp_path)
         assert finished.returncode == 0, finished.stderr
         words = finished.stdout.partition("about ")[2].split()
         foretold.append(float(words[0]) * {"MB": 1e6, "GB": 1e9}[words[1]])
@@ -88,7 +88,8 @@ def test_standard_output_that_is_full_is_an_error(tmp_path: Path, ranks: int) ->
         error = only_error(call(Options(ranks=ranks, steps=2), tmp_path, stdout=full))
         assert "standard output" in error
         for words in (["--version"], ["run", "--help"]):
-            assert subprocess.run([program("mappm"), *words], stdout=full, stderr=subprocess.DEVNULL).returncode == INPUT
+            said = subprocess.run([program("mappm"), *words], stdout=full, stderr=subprocess.DEVNULL)
+            assert said.returncode == INPUT
     assert json.loads((tmp_path / "run.json").read_text())["state"] == "finished"  # what was computed is all there
 
 

@@ -160,9 +160,17 @@ TEST_F(ToyRun, ends_its_tables_with_the_last_state) {
 }
 
 TEST_F(ToyRun, tries_its_last_files_before_its_first_step) {
-  const testing_tools::SmallDisk disk(2500);
-  EXPECT_TRUE(contains(refusal<InputError>([&] { run(); }), "snapshots/solids_000000012.vtkhdf.partial"));
+  const auto refused = [&] {
+    const testing_tools::SmallDisk disk(2500);
+    return contains(refusal<InputError>([&] { run(); }), "snapshots/solids_000000012.vtkhdf.partial");
+  };
+  EXPECT_TRUE(refused());
   EXPECT_TRUE(fs::is_empty(folder_.path())) << "nothing is left of the attempt";
+  run();
+  const std::string before = series();
+  EXPECT_TRUE(refused());
+  EXPECT_EQ(series(), before) << "nothing is lost that was to be overwritten";
+  EXPECT_EQ(files("snapshots"), std::vector<std::string>{"fluid_000000012.vtkhdf"});
 }
 
 TEST_F(ToyRun, refuses_a_folder_that_holds_a_run) {
