@@ -95,7 +95,8 @@ class RunFolder::Lock {
  public:
   explicit Lock(const fs::path& folder) : folder_(folder), path_(folder / lock_name) {
     std::error_code failed;
-    made_ = !fs::exists(folder, failed);
+    for (fs::path missing = folder; !missing.empty() && !fs::exists(missing, failed); missing = missing.parent_path())
+      made_.push_back(missing);
     make_folder(folder);
     try {
       do {
@@ -133,12 +134,12 @@ class RunFolder::Lock {
   void leave() {
     release();
     std::error_code ignored;
-    if (made_) fs::remove(folder_, ignored);  // does nothing where there is something in it
+    for (const fs::path& folder : made_) fs::remove(folder, ignored);  // does nothing where there is something in it
   }
 
   fs::path folder_, path_;
   int number_ = -1;
-  bool made_ = false;
+  std::vector<fs::path> made_;  // folders, the innermost first
 };
 
 RunFolder::RunFolder(fs::path path, Entry entry, const Group& group) : path_(std::move(path)), entry_(entry) {

@@ -16,7 +16,7 @@ class RunFolder {
 
   /// Collective. Makes the folder and locks it for as long as this object lives, and no longer than the process of the
   /// first rank does. Throws InputError where that cannot be done, where another run is at work in the folder, and
-  /// where it holds what the entry refuses. A folder that was made here and is empty at the end is removed.
+  /// where it holds what the entry refuses. Folders that were made here and are empty at the end are removed.
   RunFolder(std::filesystem::path path, Entry entry, const Group& group);
   RunFolder(RunFolder&&) noexcept;
   RunFolder& operator=(RunFolder&&) noexcept;

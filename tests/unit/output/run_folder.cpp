@@ -23,9 +23,7 @@ using Entry = RunFolder::Entry;
 
 class AFolder : public testing::Test {
  protected:
-  AFolder() { fs::remove(path()); }
-
-  fs::path path() const { return scratch_.path() / "out"; }
+  fs::path path() const { return scratch_.path() / "out" / "run"; }
   void write(const std::string& name, const std::string& text = "x") {
     fs::create_directories((path() / name).parent_path());
     write_text(path() / name, text);
@@ -42,7 +40,7 @@ TEST_F(AFolder, is_made_and_goes_if_nothing_was_written) {
   std::optional<RunFolder> folder(std::in_place, path(), Entry::refuse, group_);
   EXPECT_TRUE(fs::exists(path()));
   folder.reset();
-  EXPECT_FALSE(fs::exists(path()));
+  EXPECT_TRUE(fs::is_empty(scratch_.path()));
 }
 
 TEST_F(AFolder, that_was_there_stays) {
