@@ -208,14 +208,14 @@ StepLimits find_limits(const Scene& scene, const Model<D>& model, const Matter& 
   return limits;
 }
 
-/// a, as the scene gives it. By default it goes with nu / (c h), for what the shift stirs up at a wall is damped by
-/// viscosity: 5000 times that, but from 160 on 500 times. With more a column of fluid does not come to rest.
+/// a, as the scene gives it. By default it is 5000 nu / (c h), for what the shift stirs up at a wall is damped by viscosity,
+/// but at most 160. With more a column of fluid does not come to rest.
 template <int D>
 double shift_shear(const Scene& scene, const Model<D>& model) {
   if (scene.fluid.shift_shear) return *scene.fluid.shift_shear;
   const double h = 0.5 * scene.fluid.cutoff;
   const double viscosity = scene.fluid.viscosity / scene.fluid.density / (model.units.velocity * h);
-  return std::min(5000.0 * viscosity, std::max(160.0, 500.0 * viscosity));
+  return std::min(160.0, 5000.0 * viscosity);
 }
 
 /// Constants of the pair law; they carry the step. shift: u dt with u = kappa c h (V_i^2 + V_j^2) / (2 V_0) G r, of
