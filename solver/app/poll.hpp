@@ -60,8 +60,8 @@ class Poll {
 
   /// The text of the process that saw the deepest overlap in the earliest step: the same however solids are shared out.
   std::string text_of_first(const FirstOverlap& mine) const {
-    const std::vector<double> all = group_.gather(
-        {mine.step, mine.overlap.depth, static_cast<double>(mine.overlap.solid), mine.overlap.partner});
+    const std::vector<double> all =
+        group_.gather({mine.step, mine.overlap.depth, static_cast<double>(mine.overlap.solid), mine.overlap.partner});
     const auto key = [&](std::size_t k) { return std::tuple(all[k], -all[k + 1], all[k + 2], all[k + 3]); };
     std::size_t first = 0;
     for (std::size_t k = 4; k < all.size(); k += 4)

@@ -27,7 +27,8 @@ struct Checkpoint {
   std::uint64_t sampled_step = 0;
 };
 
-/// Collective. `scene_text`: the identity of the scene, lines "key = value". Throws InputError where the file cannot be completed.
+/// Collective. `scene_text`: the identity of the scene, lines "key = value". Throws InputError where the file cannot be
+/// completed.
 template <int D>
 void write_checkpoint(const std::string& path, const std::string& scene_text, const State<D>& state,
                       std::uint64_t sampled_step, const Group& group);

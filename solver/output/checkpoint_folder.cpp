@@ -35,7 +35,8 @@ std::vector<fs::path> agreed_list(const fs::path& folder, const Group& group) {
 /// The first sound one of a list; what was wrong with each before it goes to `refused`.
 template <int D>
 bool first_sound(const std::vector<fs::path>& paths, const std::string& scene_text, const Model<D>& model,
-                 const Region<D>& region, const Group& group, std::vector<std::string>& refused, FoundCheckpoint<D>& found) {
+                 const Region<D>& region, const Group& group, std::vector<std::string>& refused,
+                 FoundCheckpoint<D>& found) {
   for (const fs::path& path : paths) {
     try {
       found.checkpoint = read_checkpoint<D>(path.string(), scene_text, model, region, group);

@@ -119,6 +119,24 @@ std::string names_of(const Model<D>& model, const Overlap& overlap) {
                      face.x * model.pair.length[face.axis] * model.units.length);
 }
 
+/// A ball that goes farther in a step than the deepest overlap allowed could go through another one unseen. Empty if
+/// none does.
+template <int D>
+std::string missed_contacts(const Model<D>& model, std::uint64_t step, const Solid<D>& solid) {
+  const Shape<D>& shape = model.shapes[solid.shape];
+  if (is_wall_piece(shape) || solid.motion == SolidMotion::fixed) return {};
+  const double smallest = std::min_element(shape.balls.begin(), shape.balls.end(), [](const auto& a, const auto& b) {
+                            return a.contact_radius < b.contact_radius;
+                          })->contact_radius;
+  const Vec<D, double> moved = model.dt * rigid_velocity(solid, shape).linear;
+  const double radii = square_root(dot(moved, moved)) / smallest;
+  if (radii <= last_overlap) return {};
+  return fmt::format(
+      "step {}: solid {}: moves {:.3g} of its contact radius in one step, more than {}: contacts would be missed; "
+      "lower run.step",
+      step, solid.id, radii, last_overlap);
+}
+
 }  // namespace
 
 template <int D>
@@ -228,7 +246,7 @@ std::string finish_step(const Model<D>& model, std::uint64_t step, Solid<D>& sol
         square_root(dot(velocity.angular, velocity.angular)) * shape.reach,
         model.terms.fluid ? "" : ": lower run.step, or raise fluid.rcut");
   }
-  return {};
+  return model.terms.contact ? missed_contacts(model, step, solid) : std::string();
 }
 
 template <int D>
@@ -285,13 +303,13 @@ std::string range_message(RangeFault fault, std::uint64_t step, std::uint64_t id
   return {};
 }
 
-#define MAPPM_INSTANTIATE(D)                                                                                       \
-  template void add_contacts<D>(const Model<D>&, const SolidInStep<D>&, const SolidInStep<D>&, SolidLoad<D>&);     \
-  template void add_face_contacts<D>(const Model<D>&, const SolidInStep<D>&, SolidLoad<D>&);                       \
+#define MAPPM_INSTANTIATE(D)                                                                                        \
+  template void add_contacts<D>(const Model<D>&, const SolidInStep<D>&, const SolidInStep<D>&, SolidLoad<D>&);      \
+  template void add_face_contacts<D>(const Model<D>&, const SolidInStep<D>&, SolidLoad<D>&);                        \
   template void note_overlaps<D>(const Model<D>&, std::uint64_t, const std::vector<SolidLoad<D>>&, FirstOverlaps&); \
-  template std::string finish_step<D>(const Model<D>&, std::uint64_t, Solid<D>&, SolidLoad<D>&&, Vec<D, Int128>&); \
-  template ParticleStep<D> particle_step<D>(const Model<D>&, std::uint64_t);                                       \
-  template std::string range_message<D>(RangeFault, std::uint64_t, std::uint64_t, const Vec<D, double>&,           \
+  template std::string finish_step<D>(const Model<D>&, std::uint64_t, Solid<D>&, SolidLoad<D>&&, Vec<D, Int128>&);  \
+  template ParticleStep<D> particle_step<D>(const Model<D>&, std::uint64_t);                                        \
+  template std::string range_message<D>(RangeFault, std::uint64_t, std::uint64_t, const Vec<D, double>&,            \
                                         const NeighbourSums<D>&);
 MAPPM_INSTANTIATE(2)
 MAPPM_INSTANTIATE(3)

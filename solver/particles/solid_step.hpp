@@ -36,8 +36,8 @@ struct SolidLoad {
 };
 
 /// Adds the contacts of `one` with `other` to its load. Each contact is evaluated from the smaller to the larger id,
-/// so that the owners of both solids find the same bits. Where several balls of the two touch, each contact has an equal
-/// share of the masses: together they lose what one would.
+/// so that the owners of both solids find the same bits. Where several balls of the two touch, each contact has an
+/// equal share of the masses: together they lose what one would.
 template <int D>
 void add_contacts(const Model<D>& model, const SolidInStep<D>& one, const SolidInStep<D>& other, SolidLoad<D>& load);
 

@@ -24,6 +24,10 @@ constexpr std::array<double, 6> gauss_weights{0.24914704581340278500, 0.23349253
 /// Bounds the cost: of more places where a slice of the union changes its form only every so many-th is kept.
 constexpr std::size_t most_panels = 256;
 
+/// Where three balls meet in a point, a slice changes its form inside a panel: few panels are cut until they are as
+/// many as this.
+constexpr std::size_t least_panels = 64;
+
 /// Integrates over a union of balls: along lines in closed form, over the lines of a slice and over the slices by
 /// Gauss' rule, panel by panel. At the ends of a panel the integrand may have a root of the distance to it, which
 /// x = (3 s - s^3) / 2 removes. Slices of balls are balls again, of one dimension less: `axis` is the last one left.
@@ -36,18 +40,28 @@ class UnionIntegral {
  private:
   void slice(int axis, const std::vector<Ball<D>>& balls, Vec<D, double> point, double weight) {
     if (axis == 0) return add_line(balls, point, weight);
-    const std::vector<double> ends = panels(axis, balls);
+    const std::vector<double> ends = axis == D - 1 ? cut(panels(axis, balls)) : panels(axis, balls);
     for (std::size_t k = 1; k < ends.size(); ++k)
       for (std::size_t i = 0; i < gauss_nodes.size(); ++i)
         for (const double s : {-gauss_nodes[i], gauss_nodes[i]}) {
           const double half = 0.5 * (ends[k] - ends[k - 1]);
           point[axis] = 0.5 * (ends[k] + ends[k - 1]) + half * 0.5 * s * (3.0 - s * s);
           const double width = half * 1.5 * (1.0 - s * s) * gauss_weights[i];
-          slice(axis - 1, cut(axis, balls, point[axis]), point, weight * width);
+          slice(axis - 1, slices_of(axis, balls, point[axis]), point, weight * width);
         }
   }
 
-  static std::vector<Ball<D>> cut(int axis, const std::vector<Ball<D>>& balls, double x) {
+  static std::vector<double> cut(const std::vector<double>& ends) {
+    const std::size_t parts = (least_panels + ends.size() - 1) / ends.size();
+    std::vector<double> all;
+    for (std::size_t k = 1; k < ends.size(); ++k)
+      for (std::size_t part = 0; part < parts; ++part)
+        all.push_back(ends[k - 1] + (ends[k] - ends[k - 1]) * static_cast<double>(part) / static_cast<double>(parts));
+    all.push_back(ends.back());
+    return all;
+  }
+
+  static std::vector<Ball<D>> slices_of(int axis, const std::vector<Ball<D>>& balls, double x) {
     std::vector<Ball<D>> slices;
     for (const Ball<D>& ball : balls) {
       const double distance = x - ball.offset[axis];

@@ -33,7 +33,7 @@ struct Moments {
 };
 
 /// By Gauss' rule over slices and lines of the union, which knows no grid. Against closed forms and finer rules it errs
-/// by less than 1e-8 of the volume for two balls, 1e-5 for some and 1e-4 for a hundred; its cost is bounded.
+/// by less than 1e-8 of the volume for two balls, 1e-6 for some and 1e-4 for a hundred; its cost is bounded.
 template <int D>
 Moments<D> integrate_union(std::vector<Ball<D>> balls);
 

@@ -77,7 +77,8 @@ void check_margin(const Scene& scene, const Model<D>& model) {
     if (const double side = scene.box[static_cast<std::size_t>(axis)]; side < needed)
       throw InputError(
           scene.file, "box.size", fmt::format("{}", side),
-          fmt::format("too small for its solids and the reach of their forces; it must be at least {:.6g}", needed));
+          fmt::format("too small for its solids and the reach of their forces; it must be at least {:.6g}{}", needed,
+                      scene.fluid.particles ? "" : ", or fluid.rcut smaller"));
 }
 
 template <int D>

@@ -62,17 +62,17 @@ std::string known_units(Quantity quantity) {
 
 /// Letters that look like others or like nothing, as keyboards and texts have them, and what is meant.
 constexpr std::pair<std::string_view, std::string_view> spellings[] = {
-    {"\t", " "},
+    {"\t", " "},      // tab
     {"\u00a0", " "},  // no-break space
     {"\u2007", " "},  // figure space
     {"\u2009", " "},  // thin space
     {"\u202f", " "},  // narrow no-break space
+    {"\u00b7", " "},  // middle dot, as in Pa s
     {"\u2212", "-"},  // minus sign
     {"\u00b5", "u"},  // micro sign
     {"\u03bc", "u"},  // Greek mu
-    {"\u00b2", "2"},
-    {"\u00b3", "3"},
-    {"\u00b7", " "},  // middle dot, as in Pa s
+    {"\u00b2", "2"},  // superscripts
+    {"\u00b3", "3"},  //
 };
 
 /// In plain letters, with single spaces and none at the ends.
@@ -80,10 +80,10 @@ std::string plain(std::string_view text) {
   std::string result;
   while (!text.empty()) {
     std::string_view letter = text.substr(0, 1), meant = letter;
-    for (const auto& [written, plain] : spellings)
+    for (const auto& [written, sign] : spellings)
       if (text.starts_with(written)) {
         letter = written;
-        meant = plain;
+        meant = sign;
       }
     text.remove_prefix(letter.size());
     if (meant != " " || !(result.empty() || result.back() == ' ')) result += meant;

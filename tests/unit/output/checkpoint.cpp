@@ -133,7 +133,7 @@ TEST_F(CheckpointFile, refuses_a_file_of_another_kind) {
 TEST_F(CheckpointFile, refuses_another_version_of_the_format) {
   alter(nullptr, "version");
   EXPECT_TRUE(contains(refused(),
-                       "c.h5: has version 4 of the checkpoint format, this program reads version 3; resume "
+                       "c.h5: has version 5 of the checkpoint format, this program reads version 4; resume "
                        "with the program that wrote it"))
       << refused();
 }

@@ -157,6 +157,22 @@ TEST(Overlap, is_noted_with_step_and_solids_once_it_passes_a_bound) {
   EXPECT_EQ(first.last.text.find("step 13: solids 3 and 7 overlap by 0.562 "), 0u) << first.last.text;
 }
 
+TEST(FinishStep, tells_of_contacts_that_would_be_missed) {
+  const Model<2> model = hand_model<2>();
+  Vec<2, Int128> outside{};
+  const auto end_of = [&](double speed) {
+    Solid<2> solid = hand_solid(model, 4, 1, {{4.0, 4.0}}, {{speed, 0.0}});
+    return finish_step(model, 6, solid, SolidLoad<2>{}, outside);
+  };
+  EXPECT_EQ(end_of(7.0), "");  // 7/32 rcut of a ball of 1/2
+  Model<2> small = model;
+  small.shapes[1].balls[1].contact_radius = 0.25;
+  Solid<2> solid = hand_solid(small, 4, 1, {{4.0, 4.0}}, {{7.0, 0.0}});
+  const std::string message = finish_step(small, 6, solid, SolidLoad<2>{}, outside);
+  EXPECT_EQ(message.find("step 6: solid 4: moves 0.875 of its contact radius in one step, more than 0.5: "), 0u)
+      << message;
+}
+
 TEST(Overlap, with_a_wall_names_its_face) {
   Model<2> model = hand_model<2>();
   model.faces = {{77, 0, 1.0, 1.0 / model.pair.length[0], 1.0, {}}, {78, 1, 1.0, 1.5 / model.pair.length[1], 1.0, {}}};

@@ -88,8 +88,8 @@ TEST(IntegrateUnion, three_spheres_that_meet_in_a_point_turn_with_their_axes) {
   std::vector<Ball<3>> turned = balls;
   for (Ball<3>& ball : turned) ball.offset = {{ball.offset[1], ball.offset[2], ball.offset[0]}};
   const auto one = integrate_union(balls), other = integrate_union(turned);
-  EXPECT_NEAR(other.volume, one.volume, 1e-5 * one.volume);
-  for (int a = 0; a < 3; ++a) EXPECT_NEAR(other.second[a][a], one.second[(a + 1) % 3][(a + 1) % 3], 1e-5);
+  EXPECT_NEAR(other.volume, one.volume, 1e-6 * one.volume);
+  for (int a = 0; a < 3; ++a) EXPECT_NEAR(other.second[a][a], one.second[(a + 1) % 3][(a + 1) % 3], 1e-6);
 }
 
 TEST(IntegrateUnion, many_balls_take_no_longer_than_the_bound) {

@@ -116,8 +116,8 @@ TEST(SceneModel, KernelSumsAreExactOnTheLattice) {
   EXPECT_EQ(model.self_density, std::nearbyint(model.self_density / density_quantum) * density_quantum);
 }
 
-/// S^2 of one PP of a lattice that moves with v(r), from the constants of the model, (c / rcut)^2, with a = 45. S_0^2 is
-/// the same: velocities differ in proportion to the distance.
+/// S^2 of one PP of a lattice that moves with v(r), from the constants of the model, (c / rcut)^2, with a = 45. S_0^2
+/// is the same: velocities differ in proportion to the distance.
 template <int D, class Velocity>
 double shear_on_lattice(const Model<D>& model, Velocity&& velocity) {
   double sum = 0.0, of_all = 0.0;
