@@ -10,6 +10,7 @@
 #include "app/command.hpp"
 #include "app/instruction_set.hpp"
 #include "app/run_loop.hpp"
+#include "app/setup_notice.hpp"
 #include "parallel/communicator.hpp"
 #include "parallel/domains.hpp"
 #include "parallel/engine.hpp"
@@ -47,11 +48,14 @@ void check_instruction_set(const std::string& isa) {
 
 template <int D>
 void run_scene(const Scene& scene, const RunOptions& options, const DomainOptions& domain_options,
-               const Communicator& communicator) {
+               const Communicator& communicator, SetupNotice& notice) {
+  notice.doing("bodies and limits");
   BuiltModel<D> built = together(communicator, [&] { return make_model<D>(scene); });
   const Domains<D> domains =
       together(communicator, [&] { return make_domains<D>(built.model, communicator.size(), domain_options.grid); });
+  notice.doing(options.resume.empty() ? "particles" : "reading the checkpoint");
   Start<D> start = start_run<D>(scene, built.model, domains.region(communicator.rank()), options, communicator);
+  notice.doing("domains");
   ParallelOptions engine_options = domain_options.engine;
   if (domain_options.faces) engine_options.faces = scene.output.sample;
   ParallelEngine<D> engine(built.model, domains, communicator, std::move(start.state), engine_options);
@@ -63,6 +67,7 @@ void run_scene(const Scene& scene, const RunOptions& options, const DomainOption
   setup.domains.assign(grid.component, grid.component + D);
   setup.threads = domain_options.engine.threads;
   setup.faces = domain_options.faces;
+  notice.end();
   RunLoop<D, ParallelEngine<D>>(setup, engine).run();
 }
 
@@ -73,7 +78,6 @@ void run_scene(const Scene& scene, const RunOptions& options, const DomainOption
 int main(int argc, char** argv) try {
   using namespace mappm;
   const Communicator communicator(argc, argv);
-  watch_stop_signals();
   DomainOptions domain_options;
   const auto add_options = [&](CLI::App& command) {
     command.add_option(
@@ -91,11 +95,12 @@ int main(int argc, char** argv) try {
   };
   return run_command(argc, argv, communicator, "mappm", add_options, [&](const RunOptions& options) {
     together(communicator, [&] { check_instruction_set(domain_options.isa); });
+    SetupNotice notice(communicator, options);
     const Scene scene = together(communicator, [&] { return read_scene(options.scene, options.overrides); });
     if (scene.dimension == 2)
-      run_scene<2>(scene, options, domain_options, communicator);
+      run_scene<2>(scene, options, domain_options, communicator, notice);
     else
-      run_scene<3>(scene, options, domain_options, communicator);
+      run_scene<3>(scene, options, domain_options, communicator, notice);
   });
 } catch (const std::exception& error) {  // before the command line could be read
   std::fprintf(stderr, "error: %s\n", error.what());

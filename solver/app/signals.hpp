@@ -9,7 +9,8 @@ inline volatile std::sig_atomic_t stop_signal = 0;
 
 extern "C" inline void note_stop_signal(int number) { stop_signal = number; }
 
-/// From now on the two signals only raise the flag.
+/// From now on the two signals only raise the flag. Before, while a run is set up, they end the program: nothing has
+/// been written that could be lost.
 inline void watch_stop_signals() {
   struct sigaction action {};
   action.sa_handler = note_stop_signal;

@@ -44,7 +44,7 @@ Model<D> start_model(const Scene& scene, const Lattice<D>& lattice) {
 struct Matter {
   std::uint64_t fluid_particles = 0;
   double free_mass = 0.0;
-  double lightest = HUGE_VAL;    // free solid
+  double lightest = HUGE_VAL;    // free solid, of a composite the share of one ball: all may touch at once
   double lightest_radius = 0.0;  // for contact, rcut
   std::size_t free_solids = 0, ball_solids = 0;
 };
@@ -62,8 +62,9 @@ Matter count_matter(const Scene& scene, const Model<D>& model, const Lattice<D>&
     ++matter.free_solids;
     const Shape<D>& shape = model.shapes[solid.shape];
     matter.free_mass += shape.mass;
-    if (shape.mass >= matter.lightest) continue;
-    matter.lightest = shape.mass;
+    const double share = shape.mass / static_cast<double>(shape.balls.size());
+    if (share >= matter.lightest) continue;
+    matter.lightest = share;
     matter.lightest_radius = shape.balls[0].contact_radius;
   }
   if (scene.fluid.particles && matter.fluid_particles == 0)
@@ -75,7 +76,7 @@ template <int D>
 Terms find_terms(const Scene& scene, const Matter& matter) {
   Terms terms;
   terms.fluid = scene.fluid.particles;
-  terms.solids = !scene.bodies.empty();
+  terms.solids = terms.fluid ? !scene.bodies.empty() : matter.ball_solids > 0;
   terms.transport = terms.fluid && scene.fluid.transport;
   terms.extrapolated = terms.fluid && terms.solids && scene.fluid.no_slip == NoSlip::extrapolated;
   terms.single = terms.fluid && scene.fluid.precision == Precision::single;
@@ -295,7 +296,7 @@ BuiltModel<D> make_model(const Scene& scene) {
   const double step = scene.run.step > 0.0 ? scene.run.step : scene.run.step_factor * limits.ruling().usual;
   check_step(scene, step, limits);
   model.dt = step / model.units.time();
-  fold_pair_law(scene, lattice, model);
+  if (model.terms.fluid) fold_pair_law(scene, lattice, model);
   fold_forces(scene, matter, model);
   BuiltModel<D> built{model, matter.fluid_particles, limits, {}};
   built.warnings = scene_warnings(scene, model, lattice, limits);

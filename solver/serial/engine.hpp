@@ -23,6 +23,7 @@ class SerialEngine {
   State<D>& state() { return state_; }
   Sample<D> sample();
   const std::string& range_error() const { return range_error_; }
+  const FirstOverlaps& overlaps() const { return overlaps_; }
   void trace_next_step(std::uint64_t particle) { traced_particle_ = particle; }
   const MaybeTrace<D>& last_trace() const { return trace_; }
   PhaseSeconds phase_seconds() const { return {{"pairs", pair_seconds_}, {"integrate", integrate_seconds_}}; }
@@ -70,6 +71,7 @@ class SerialEngine {
   MaybeTrace<D> trace_;
 
   std::string range_error_;
+  FirstOverlaps overlaps_;
   double pair_seconds_ = 0.0, integrate_seconds_ = 0.0;
 };
 

@@ -73,5 +73,42 @@ TEST(Poll, gives_the_earliest_range_error_to_all) {
   EXPECT_EQ(seen, 3);
 }
 
+FirstOverlap overlap(double step, double depth, std::uint64_t solid, const char* text) {
+  return {step, {depth, solid, 9.0}, text};
+}
+
+TEST(Poll, warns_all_once_of_the_deepest_overlap_of_the_first_step) {
+  std::atomic<int> right = 0, warnings = 0;
+  ThreadGroup(4).run([&](const Group& group) {
+    Poll poll(group, 0, [&](const std::string& text) {
+      ++warnings;
+      right += text == "deepest";
+    });
+    const FirstOverlap seen[] = {overlap(8, 0.4, 1, "later"), overlap(7, 0.2, 1, "shallow"),
+                                 overlap(7, 0.3, 3, "of a larger id"), overlap(7, 0.3, 2, "deepest")};
+    poll.agree_to_stop(5, 0.0);
+    poll.note(FirstOverlaps{seen[group.rank()], {}});
+    poll.agree_to_stop(10, 0.0);
+    poll.agree_to_stop(20, 0.0);
+  });
+  EXPECT_EQ(warnings, 4);
+  EXPECT_EQ(right, 4);
+}
+
+TEST(Poll, an_overlap_beyond_the_last_ends_the_run_for_all_unless_another_value_left_its_range_before) {
+  std::atomic<int> seen = 0;
+  ThreadGroup(2).run([&](const Group& group) {
+    Poll poll(group, 0);
+    if (group.rank() == 1) poll.note(FirstOverlaps{{}, overlap(8, 0.6, 1, "too deep")});
+    poll.note(9, group.is_first() ? "followed" : "");
+    seen += refusal<RangeError>([&] { poll.agree_to_stop(10, 0.0); }) == "too deep";
+    Poll other(group, 0);
+    if (group.rank() == 1) other.note(FirstOverlaps{{}, overlap(8, 0.6, 1, "followed")});
+    other.note(7, group.is_first() ? "fluid" : "");
+    seen += refusal<RangeError>([&] { other.agree_to_stop(10, 0.0); }) == "fluid";
+  });
+  EXPECT_EQ(seen, 4);
+}
+
 }  // namespace
 }  // namespace mappm
