@@ -120,7 +120,7 @@ BlockWork work_of_pairs(const Model<D>& model) {
   Operations& operations = work.operations;
   with_pair_law(model, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     using Rounding = typename DoublePairs<D>::ListRounding;
-    constexpr int components = transport ? 2 * D + angular_components<D> : D;
+    constexpr int components = transport ? 2 * D + 2 : D;  // impulse, shift, shear, agitation
     pair_density<Kernel, Rounding, D>(model.pair, cut_distance(Counted::of_lanes(0.25, operations)));
     const Counted q = cut_distance(Counted::of_lanes(0.25, operations));
     const Vec<D, Counted> r = separation(model.pair, Vec<D, Counted>{} - of_lanes<D>(operations));

@@ -11,6 +11,7 @@
 #include "app/instruction_set.hpp"
 #include "app/memory.hpp"
 #include "app/run_loop.hpp"
+#include "app/setup_notice.hpp"
 #include "parallel/communicator.hpp"
 #include "parallel/domains.hpp"
 #include "parallel/engine.hpp"
@@ -51,13 +52,16 @@ void check_instruction_set(const std::string& isa) {
 
 template <int D>
 void run_scene(const Scene& scene, const RunOptions& options, const DomainOptions& domain_options,
-               const Communicator& communicator) {
+               const Communicator& communicator, SetupNotice& notice) {
   const MemoryNeed need = memory_need(scene, particle_bytes);
   check_memory(scene, need, communicator);
+  notice.doing("bodies and limits");
   BuiltModel<D> built = together(communicator, [&] { return make_model<D>(scene); });
   const Domains<D> domains =
       together(communicator, [&] { return make_domains<D>(built.model, communicator.size(), domain_options.grid); });
+  notice.doing(options.resume.empty() ? "particles" : "reading the checkpoint");
   Start<D> start = start_run<D>(scene, built.model, domains.region(communicator.rank()), options, communicator);
+  notice.doing("domains");
   ParallelOptions engine_options = domain_options.engine;
   if (domain_options.faces) engine_options.faces = scene.output.sample;
   engine_options.last_step = last_step(scene, built.model, options);
@@ -71,6 +75,7 @@ void run_scene(const Scene& scene, const RunOptions& options, const DomainOption
   setup.domains.assign(grid.component, grid.component + D);
   setup.threads = domain_options.engine.threads;
   setup.faces = domain_options.faces;
+  notice.end();
   RunLoop<D, ParallelEngine<D>>(setup, engine).run();
 }
 
@@ -81,8 +86,8 @@ void run_scene(const Scene& scene, const RunOptions& options, const DomainOption
 int main(int argc, char** argv) try {
   using namespace mappm;
   open_standard_streams();
+  make_write_signals_errors();
   const Communicator communicator(argc, argv);
-  watch_stop_signals();
   DomainOptions domain_options;
   const auto add_options = [&](CLI::App& command) {
     add_text(command, "--domains", domain_options.grid,
@@ -97,15 +102,16 @@ int main(int argc, char** argv) try {
   };
   return run_command(argc, argv, communicator, "mappm", add_options, [&](const RunOptions& options) {
     together(communicator, [&] { check_instruction_set(domain_options.isa); });
+    SetupNotice notice(communicator, options);
     std::string text;  // read once: a pipe gives it to one process alone
     on_first(communicator, [&] { text = scene_file_text(options.scene); });
     text = communicator.broadcast(text, 0);
     const Scene scene =
         together(communicator, [&] { return read_scene_text(text, options.scene, options.overrides); });
     if (scene.dimension == 2)
-      run_scene<2>(scene, options, domain_options, communicator);
+      run_scene<2>(scene, options, domain_options, communicator, notice);
     else
-      run_scene<3>(scene, options, domain_options, communicator);
+      run_scene<3>(scene, options, domain_options, communicator, notice);
   });
 } catch (const std::exception& error) {  // before the command line could be read
   std::fprintf(stderr, "error: %s\n", error.what());

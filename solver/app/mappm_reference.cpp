@@ -8,6 +8,7 @@
 #include "app/command.hpp"
 #include "app/memory.hpp"
 #include "app/run_loop.hpp"
+#include "app/setup_notice.hpp"
 #include "base/single_group.hpp"
 #include "scene/reader.hpp"
 #include "serial/engine.hpp"
@@ -20,10 +21,13 @@ namespace {
 constexpr ParticleBytes particle_bytes{.each = 180.0, .an_axis = 26.0, .a_neighbour = 0.0};
 
 template <int D>
-void run_scene(const Scene& scene, const RunOptions& options, Neighbours neighbours, const Group& group) {
+void run_scene(const Scene& scene, const RunOptions& options, Neighbours neighbours, const Group& group,
+               SetupNotice& notice) {
   const MemoryNeed need = memory_need(scene, particle_bytes);
   check_memory(scene, need, group);
+  notice.doing("bodies and limits");
   BuiltModel<D> built = make_model<D>(scene);
+  notice.doing(options.resume.empty() ? "particles" : "reading the checkpoint");
   Start<D> start = start_run<D>(scene, built.model, Region<D>::whole_box(), options, group);
   SerialEngine<D> engine(built.model, std::move(start.state), neighbours);
 
@@ -31,6 +35,7 @@ void run_scene(const Scene& scene, const RunOptions& options, Neighbours neighbo
   setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
   setup.memory = need.text();
   if (neighbours == Neighbours::all_pairs) setup.program_options = " --neighbours all-pairs";
+  notice.end();
   RunLoop<D, SerialEngine<D>>(setup, engine).run();
 }
 
@@ -41,8 +46,8 @@ void run_scene(const Scene& scene, const RunOptions& options, Neighbours neighbo
 int main(int argc, char** argv) try {
   using namespace mappm;
   open_standard_streams();
+  make_write_signals_errors();
   const SingleGroup group;
-  watch_stop_signals();
   Neighbours neighbours = Neighbours::cells;
   const std::map<std::string, Neighbours> searches{{"cells", Neighbours::cells}, {"all-pairs", Neighbours::all_pairs}};
   const auto add_options = [&](CLI::App& command) {
@@ -51,11 +56,12 @@ int main(int argc, char** argv) try {
         ->transform(CLI::CheckedTransformer(searches));
   };
   return run_command(argc, argv, group, "mappm-reference", add_options, [&](const RunOptions& options) {
+    SetupNotice notice(group, options);
     const Scene scene = read_scene(options.scene, options.overrides);
     if (scene.dimension == 2)
-      run_scene<2>(scene, options, neighbours, group);
+      run_scene<2>(scene, options, neighbours, group, notice);
     else
-      run_scene<3>(scene, options, neighbours, group);
+      run_scene<3>(scene, options, neighbours, group, notice);
   });
 } catch (const std::exception& error) {  // before the command line could be read
   std::fprintf(stderr, "error: %s\n", error.what());

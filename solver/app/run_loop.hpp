@@ -15,6 +15,7 @@
 #include "app/instruction_set.hpp"
 #include "app/options.hpp"
 #include "app/poll.hpp"
+#include "app/signals.hpp"
 #include "app/start.hpp"
 #include "output/checkpoint_folder.hpp"
 #include "output/durable_file.hpp"
@@ -75,11 +76,12 @@ class RunLoop {
         first_step_(engine.state().step),
         last_step_(std::max(first_step_, last_step(setup.scene, setup.model, setup.options))),
         sampled_step_(setup.start.sampled_step),
-        poll_(setup.group, first_step_) {}
+        poll_(setup.group, first_step_, [this](const std::string& text) { warn(text); }) {}
 
   /// Collective. Runs to the end or to a signal; both leave the output complete and print the last line. Throws
   /// InputError where output cannot be written and RangeError; run.json then says so.
   void run() {
+    watch_stop_signals();
     begin();
     std::string state = "finished", message;
     try {
@@ -120,6 +122,7 @@ class RunLoop {
   void write_outputs();
   void sample(const Sample<D>& now);
   void check_mach(const Totals<D>& totals, const FluidParticles<D>& fluid);
+  void warn(const std::string& text);
   std::string step_text() const;
   void save();
   void remember(const Totals<D>& totals);
@@ -152,12 +155,13 @@ void RunLoop<D, E>::begin() {
   check_trace();
   remember(measure(model, engine_.sample(), group));
   try_last_files();
-  start.folder.open(scene.text, group);  // from here on what was there before is replaced
+  start.folder.open(scene.identity, group);  // from here on what was there before is replaced
   record_.program = program;
   record_.instruction_set = instruction_set;
   record_.scene_file = scene.file;
   record_.scene_name = scene.name;
   record_.scene_text = scene.text;
+  record_.scene_identity = scene.identity;
   record_.terms = model.terms;
   record_.warnings = warnings;
   record_.first_step = first_step_;
@@ -194,6 +198,7 @@ bool RunLoop<D, E>::advance() {
   if (!setup_.start.resumed_step.has_value()) write_outputs();
   while (step() < last_step_) {
     make_step();
+    poll_.note(engine_.overlaps());
     if (!poll_.due(step()) && !outputs_due()) continue;
     const double steps_done = static_cast<double>(step() - first_step_);
     const bool stop = poll_.agree_to_stop(step(), stepping_.seconds() / steps_done, engine_.first_fault());
@@ -304,18 +309,24 @@ void RunLoop<D, E>::check_mach(const Totals<D>& totals, const FluidParticles<D>&
   std::vector<double> place;
   for (int axis = 0; axis < D; ++axis)
     place.push_back(fastest.position[axis] * model.pair.length[axis] * model.units.length);
-  record_.warnings.push_back(fmt::format(
+  warn(fmt::format(
       "step {}: local Mach number {:.3g} at ({:.6g}), beyond {}: the fluid is compressed there and may tear; a "
       "sound speed of {:.3g} would keep it at a tenth",
       step(), fastest.mach, fmt::join(place, ", "), largest_local_mach, 10.0 * fastest.mach * model.units.velocity));
-  say_on_first([&] { fmt::print(stderr, "warning: {}\n", record_.warnings.back()); });
+}
+
+template <int D, class E>
+requires Engine<E, D>
+void RunLoop<D, E>::warn(const std::string& text) {
+  record_.warnings.push_back(text);
+  say_on_first([&] { fmt::print(stderr, "warning: {}\n", text); });
 }
 
 template <int D, class E>
 requires Engine<E, D>
 void RunLoop<D, E>::save() {
   output_.time([&] {
-    saved_ = save_checkpoint(folder_ / checkpoint_folder_name, setup_.scene.text, engine_.state(), sampled_step_,
+    saved_ = save_checkpoint(folder_ / checkpoint_folder_name, setup_.scene.identity, engine_.state(), sampled_step_,
                              setup_.group);
   });
   saved_step_ = step();

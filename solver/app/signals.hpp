@@ -10,8 +10,8 @@ inline volatile std::sig_atomic_t stop_signal = 0;
 
 extern "C" inline void note_stop_signal(int number) { stop_signal = number; }
 
-/// From now on these signals only raise the flag. A hangup that is ignored stays so: that is what nohup asks for.
-/// A write that a limit or a reader that is gone cuts short is no signal but an error of the write.
+/// From now on these signals only raise the flag. Before, while a run is set up, they end the program: nothing has been
+/// written that could be lost. A hangup that is ignored stays so: that is what nohup asks for.
 inline void watch_stop_signals() {
   struct sigaction action {};
   action.sa_handler = note_stop_signal;
@@ -22,6 +22,10 @@ inline void watch_stop_signals() {
     if (number == SIGHUP && before.sa_handler == SIG_IGN) continue;
     sigaction(number, &action, nullptr);
   }
+}
+
+/// A write that a limit or a reader that is gone cuts short does not end the program, but fails.
+inline void make_write_signals_errors() {
   for (const int number : {SIGXFSZ, SIGPIPE}) std::signal(number, SIG_IGN);
 }
 

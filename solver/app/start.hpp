@@ -35,26 +35,6 @@ inline RunFolder::Entry entry_of(const RunOptions& options) {
   return options.overwrite ? RunFolder::Entry::overwrite : RunFolder::Entry::refuse;
 }
 
-/// Collective. Takes the output folder, then what of the state lies in `region`. Throws InputError.
-template <int D>
-Start<D> start_run(const Scene& scene, const Model<D>& model, const Region<D>& region, const RunOptions& options,
-                   const Group& group) {
-  Start<D> start{RunFolder(options.output_folder(scene.name), entry_of(options), group)};
-  if (options.resume.empty()) {
-    start.state = together(group, [&] { return build_state<D>(scene, model, region); });
-    start.state.start_momentum = momentum_share(start.state);
-    group.sum(std::span<Int128>(start.state.start_momentum.component));
-    return start;
-  }
-  auto found = find_checkpoint<D>(options.resume, scene.text, model, region, group);
-  start.state = std::move(found.checkpoint.state);
-  start.resumed_step = start.state.step;
-  start.sampled_step = found.checkpoint.sampled_step;
-  if (!found.warning.empty())
-    start.warnings.push_back(found.warning + "; resumed from " + found.path.string() + " instead");
-  return start;
-}
-
 /// The step at which a run ends: what the command line says, or else relaxation and duration of the scene.
 template <int D>
 std::uint64_t last_step(const Scene& scene, const Model<D>& model, const RunOptions& options) {
@@ -66,6 +46,43 @@ std::uint64_t last_step(const Scene& scene, const Model<D>& model, const RunOpti
     throw InputError(scene.file, "run.duration", fmt::format("{}", scene.run.duration),
                      fmt::format("is {:.3g} steps, more than can be counted; shorten it", steps));
   return scene.run.relax + static_cast<std::uint64_t>(std::ceil(steps * (1.0 - 1e-12)));
+}
+
+/// A run that is to end before the step of its checkpoint cannot; one that is to end there makes no step.
+template <int D>
+void check_end(const Scene& scene, const Model<D>& model, const RunOptions& options, const std::string& checkpoint,
+               Start<D>& start) {
+  const std::uint64_t last = last_step(scene, model, options), first = *start.resumed_step;
+  if (last > first) return;
+  const std::string file = options.steps ? "command line" : scene.file;
+  const std::string key = options.steps ? "--steps" : scene.run.steps > 0 ? "run.steps" : "run.duration";
+  const std::string reached = fmt::format("{} is of step {}", checkpoint, first);
+  if (last < first)
+    throw InputError(file, key, "",
+                     fmt::format("the run ends at step {}, and {}; let it end later, or resume an earlier checkpoint",
+                                 last, reached));
+  start.warnings.push_back(fmt::format("{}: {}, the last: no step is made", key, reached));
+}
+
+/// Collective. Takes the output folder, then what of the state lies in `region`. Throws InputError.
+template <int D>
+Start<D> start_run(const Scene& scene, const Model<D>& model, const Region<D>& region, const RunOptions& options,
+                   const Group& group) {
+  Start<D> start{RunFolder(options.output_folder(scene.name), entry_of(options), group)};
+  if (options.resume.empty()) {
+    start.state = together(group, [&] { return build_state<D>(scene, model, region); });
+    start.state.start_momentum = momentum_share(start.state);
+    group.sum(std::span<Int128>(start.state.start_momentum.component));
+    return start;
+  }
+  auto found = find_checkpoint<D>(options.resume, scene.identity, model, region, group);
+  start.state = std::move(found.checkpoint.state);
+  start.resumed_step = start.state.step;
+  start.sampled_step = found.checkpoint.sampled_step;
+  if (!found.warning.empty())
+    start.warnings.push_back(found.warning + "; resumed from " + found.path.string() + " instead");
+  check_end(scene, model, options, found.path.string(), start);
+  return start;
 }
 
 }  // namespace mappm

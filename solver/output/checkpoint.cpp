@@ -20,7 +20,7 @@ namespace mappm {
 namespace {
 
 constexpr const char* format_name = "MaPPM checkpoint";
-constexpr std::uint64_t format_version = 3;
+constexpr std::uint64_t format_version = 4;
 constexpr std::uint64_t slice_rows = 1 << 18;        // PPs read at a time
 constexpr std::uint64_t solid_slice_rows = 1 << 10;  // solids read at a time
 
@@ -112,9 +112,9 @@ void check_header(const Hdf5Reader& file, const std::string& path, const std::st
   const auto letters = file.rows<std::uint8_t>("/scene", 0, file.row_count("/scene"), 0);
   const std::string text(letters.begin(), letters.end());
   if (file.number_attribute("/", "scene_hash") != text_hash(text)) refuse(path, "is damaged: its scene");
-  const std::string difference = first_difference(scene_identity(scene_text), scene_identity(text));
+  const std::string difference = first_difference(scene_text, text);
   if (!difference.empty())
-    refuse(path, "belongs to another scene: this one has " + difference +
+    refuse(path, "belongs to another scene: " + difference +
                      "; only [output] and run.steps or run.duration may differ when a run is resumed");
 }
 

@@ -4,7 +4,7 @@
 //
 //   /            attributes: format, version, dimension, scene_hash, step, sampled_step, digest, ledger_hash,
 //                start_momentum, outside_impulse (low and high word an axis)
-//   /scene       the declaration of the scene, a byte a letter
+//   /scene       the identity of the scene (scene/scene.hpp), a byte a letter
 //   /fluid/id, /fluid/x_x ..., v_x ..., density     a row a PP: position quanta, velocity and density as counts of
 //   quanta /solids/words      a row of 64-bit words a solid (see solid_words.hpp) /solids/density    of the FPs, one
 //   solid's after the other's: counts of density quanta /solids/contacts   a row of words a contact, one solid's after
@@ -31,7 +31,8 @@ struct Checkpoint {
 template <int D>
 std::uint64_t checkpoint_bytes(std::uint64_t fluid_particles, std::uint64_t solids);
 
-/// Collective. `scene_text`: the declaration of the scene. Throws InputError where the file cannot be completed.
+/// Collective. `scene_text`: the identity of the scene, lines "key = value". Throws InputError where the file cannot be
+/// completed.
 template <int D>
 void write_checkpoint(const std::string& path, const std::string& scene_text, const State<D>& state,
                       std::uint64_t sampled_step, const Group& group);

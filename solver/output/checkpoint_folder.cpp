@@ -1,6 +1,7 @@
 #include "output/checkpoint_folder.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <sstream>
@@ -31,17 +32,18 @@ std::vector<fs::path> agreed_list(const fs::path& folder, const Group& group) {
   return paths;
 }
 
-/// The first sound one of a list; what was wrong with those before it goes to `refused`.
+/// The first sound one of a list; what was wrong with each before it goes to `refused`.
 template <int D>
 bool first_sound(const std::vector<fs::path>& paths, const std::string& scene_text, const Model<D>& model,
-                 const Region<D>& region, const Group& group, std::string& refused, FoundCheckpoint<D>& found) {
+                 const Region<D>& region, const Group& group, std::vector<std::string>& refused,
+                 FoundCheckpoint<D>& found) {
   for (const fs::path& path : paths) {
     try {
       found.checkpoint = read_checkpoint<D>(path.string(), scene_text, model, region, group);
       found.path = path;
       return true;
     } catch (const InputError& error) {
-      refused += (refused.empty() ? "" : "; ") + std::string(error.what());
+      refused.emplace_back(error.what());
     }
   }
   return false;
@@ -112,23 +114,24 @@ template <int D>
 FoundCheckpoint<D> find_checkpoint(const fs::path& from, const std::string& scene_text, const Model<D>& model,
                                    const Region<D>& region, const Group& group) {
   FoundCheckpoint<D> found;
-  std::string refused;
+  std::vector<std::string> refused;
   std::error_code failed;
   if (!fs::is_directory(from, failed)) {
     if (first_sound<D>({from}, scene_text, model, region, group, refused, found)) return found;
-    std::string ignored;
+    std::vector<std::string> ignored;
     std::vector<fs::path> others = agreed_list(from.has_parent_path() ? from.parent_path() : ".", group);
     std::erase_if(others, [&](const fs::path& path) { return path.filename() == from.filename(); });
     if (first_sound<D>(others, scene_text, model, region, group, ignored, found))
-      throw InputError(refused + "; an older checkpoint is sound, of step " +
+      throw InputError(refused[0] + "; an older checkpoint is sound, of step " +
                        std::to_string(found.checkpoint.state.step) + ": --resume " + found.path.string());
-    throw InputError(refused);
+    throw InputError(refused[0]);
   }
   const std::vector<fs::path> paths = agreed_list(folder_of(from), group);
   if (paths.empty())
     throw InputError(from.string() + ": holds no checkpoint; give a file checkpoint_*.h5 or the folder of a run");
-  if (!first_sound<D>(paths, scene_text, model, region, group, refused, found)) throw InputError(refused);
-  found.warning = refused;
+  if (!first_sound<D>(paths, scene_text, model, region, group, refused, found))
+    throw InputError(refused[0] + (refused.size() > 1 ? "; the older ones there cannot be used either" : ""));
+  found.warning = fmt::format("{}", fmt::join(refused, "; "));
   return found;
 }
 

@@ -75,12 +75,12 @@ void remove_file(const fs::path& path) {
                      "; choose another folder with --out");
 }
 
-void check_same_scene(const fs::path& folder, const std::string& scene_text) {
+void check_same_scene(const fs::path& folder, const std::string& scene_identity) {
   const fs::path record = folder / run_record_name;
   if (!fs::exists(record)) return;
-  const std::string difference = first_difference(scene_identity(scene_text), scene_identity(recorded_scene(record)));
+  const std::string difference = first_difference(scene_identity, recorded_identity(record), run_record_name);
   if (!difference.empty())
-    throw InputError(record.string() + ": is of another scene: this one has " + difference +
+    throw InputError(record.string() + ": is of another scene: " + difference +
                      "; resume in the folder of its run, or choose a new one with --out");
 }
 
@@ -156,9 +156,9 @@ RunFolder::RunFolder(RunFolder&&) noexcept = default;
 RunFolder& RunFolder::operator=(RunFolder&&) noexcept = default;
 RunFolder::~RunFolder() = default;
 
-void RunFolder::open(const std::string& scene_text, const Group& group) const {
+void RunFolder::open(const std::string& scene_identity, const Group& group) const {
   on_first(group, [&] {
-    if (entry_ == Entry::resume) check_same_scene(path_, scene_text);
+    if (entry_ == Entry::resume) check_same_scene(path_, scene_identity);
     for (const fs::path& path : left_by_runs(path_, entry_ != Entry::overwrite)) remove_file(path);
     for (const char* folder : {snapshot_folder_name, checkpoint_folder_name}) {
       std::error_code failed;

@@ -25,7 +25,7 @@ class RunFolder {
   /// Collective. To be called before anything is written: with `overwrite` removes what an earlier run left, and
   /// nothing else. Throws InputError where a resumed run is of another scene than the one whose output the folder
   /// holds.
-  void open(const std::string& scene_text, const Group& group) const;
+  void open(const std::string& scene_identity, const Group& group) const;
 
   const std::filesystem::path& path() const { return path_; }
 

@@ -72,7 +72,10 @@ std::string run_record_text(const RunRecord& record) {
   json["instruction_set"] = record.instruction_set;
   json["host"] = host_name();
   json["date"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-  json["scene"] = {{"file", record.scene_file}, {"name", record.scene_name}, {"text", record.scene_text}};
+  json["scene"] = {{"file", record.scene_file},
+                   {"name", record.scene_name},
+                   {"text", record.scene_text},
+                   {"identity", record.scene_identity}};
   json["terms"] = term_names(record.terms);
   json["warnings"] = record.warnings;
   json["first_step"] = record.first_step;
@@ -103,11 +106,12 @@ std::string run_record_text(const RunRecord& record) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-std::string recorded_scene(const std::filesystem::path& path) {
+std::string recorded_identity(const std::filesystem::path& path) {
   std::ifstream file(path);
   const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
-  const nlohmann::json::json_pointer text("/scene/text");
-  return json.is_object() && json.contains(text) && json[text].is_string() ? json[text].get<std::string>() : "";
+  const nlohmann::json::json_pointer identity("/scene/identity");
+  const bool given = json.is_object() && json.contains(identity) && json[identity].is_string();
+  return given ? json[identity].get<std::string>() : "";
 }
 
 void write_run_record(const std::filesystem::path& path, const RunRecord& record) {

@@ -18,7 +18,7 @@ std::vector<std::string> term_names(const Terms& terms);
 
 struct RunRecord {
   std::string program, instruction_set;
-  std::string scene_file, scene_name, scene_text;
+  std::string scene_file, scene_name, scene_text, scene_identity;
   Terms terms;
   std::vector<std::string> warnings;
   std::uint64_t first_step = 0, step = 0;                    // of this program run: begun at, reached
@@ -45,8 +45,8 @@ std::string run_record_text(const RunRecord& record);
 
 inline constexpr const char* run_record_name = "run.json";
 
-/// The text of the scene in a record; empty where the file is none.
-std::string recorded_scene(const std::filesystem::path& path);
+/// The identity of the scene in a record; empty where the file is none.
+std::string recorded_identity(const std::filesystem::path& path);
 
 /// Writes it as a whole or not at all. Throws InputError.
 void write_run_record(const std::filesystem::path& path, const RunRecord& record);

@@ -1,7 +1,10 @@
 #include "output/scene_identity.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
 #include <sstream>
-#include <vector>
 
 #include "base/digest.hpp"
 
@@ -9,51 +12,35 @@ namespace mappm {
 
 namespace {
 
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r");
-  if (begin == std::string::npos) return "";
-  return text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
+constexpr std::size_t most_letters = 60;  // of a value in a message
+constexpr const char* not_given = "not given";
+
+std::map<std::string, std::string> entries_of(const std::string& identity) {
+  std::map<std::string, std::string> entries;
+  std::istringstream lines(identity);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t sign = line.find(" = ");
+    if (sign != std::string::npos) entries[line.substr(0, sign)] = line.substr(sign + 3);
+  }
+  return entries;
 }
 
-std::string key_of(const std::string& line) { return trimmed(line.substr(0, line.find('='))); }
-
-/// "run = { steps = 5, relax = 2 }" as the lines of a table; any other line as it is.
-std::vector<std::string> expanded(const std::string& line) {
-  const std::string key = key_of(line);
-  const std::size_t open = line.find('{');
-  if ((key != "run" && key != "output") || open == std::string::npos) return {line};
-  std::vector<std::string> lines{"[" + key + "]"};
-  std::istringstream entries(line.substr(open + 1, line.rfind('}') - open - 1));
-  for (std::string entry; std::getline(entries, entry, ',');) lines.push_back(trimmed(entry));
-  lines.push_back("[]");  // what follows belongs to the top table again
-  return lines;
+/// Where it is long, the part about the place at which it differs.
+std::string shortened(const std::string& value, std::size_t place) {
+  if (value.size() <= most_letters) return value;
+  const std::size_t begin = place > most_letters / 2 ? place - most_letters / 2 : 0;
+  const bool ends = begin + most_letters >= value.size();
+  return (begin > 0 ? "..." : "") + value.substr(begin, most_letters) + (ends ? "" : "...");
 }
 
-/// "" for the top table, "run" for [run], "body" for [[body]].
-std::string table_of(const std::string& header) {
-  const std::size_t begin = header.find_first_not_of('[');
-  if (begin == std::string::npos) return "";
-  return header.substr(begin, header.find(']') - begin);
+std::string difference_text(const std::string& key, const std::string& here, const std::string& there,
+                            const std::string& where) {
+  const auto place = static_cast<std::size_t>(
+      std::mismatch(here.begin(), here.end(), there.begin(), there.end()).first - here.begin());
+  return fmt::format("{} = {} here and {} in {}", key, shortened(here, place), shortened(there, place), where);
 }
 
 }  // namespace
-
-std::string scene_identity(const std::string& text) {
-  std::string identity;
-  std::string table;
-  std::istringstream lines(text);
-  for (std::string raw; std::getline(lines, raw);) {
-    for (const std::string& line : expanded(trimmed(raw))) {
-      if (line.empty()) continue;
-      const bool header = line[0] == '[' && line.find('=') == std::string::npos && table_of(line) != "";
-      if (header || line == "[]") table = header ? table_of(line) : "";
-      if (table == "output" || line == "[]") continue;
-      if (table == "run" && (header || key_of(line) == "steps" || key_of(line) == "duration")) continue;
-      identity += (table == "run" ? "run." : "") + line + '\n';
-    }
-  }
-  return identity;
-}
 
 std::uint64_t text_hash(const std::string& text) {
   ParticleHash hash(text.size());
@@ -61,16 +48,18 @@ std::uint64_t text_hash(const std::string& text) {
   return hash.value();
 }
 
-std::string first_difference(const std::string& found, const std::string& expected) {
-  std::istringstream found_lines(found), expected_lines(expected);
-  while (true) {
-    std::string a, b;
-    const bool more_a = static_cast<bool>(std::getline(found_lines, a));
-    const bool more_b = static_cast<bool>(std::getline(expected_lines, b));
-    if (!more_a && !more_b) return "";
-    if (a != b || more_a != more_b)
-      return (more_a ? "'" + a + "'" : "nothing") + " instead of " + (more_b ? "'" + b + "'" : "nothing");
+std::string first_difference(const std::string& here, const std::string& there, const std::string& place) {
+  const auto ours = entries_of(here), theirs = entries_of(there);
+  for (const auto& [key, value] : ours) {
+    const auto other = theirs.find(key);
+    if (other == theirs.end()) continue;
+    if (other->second != value) return difference_text(key, value, other->second, place);
   }
+  for (const auto& [key, value] : ours)
+    if (!theirs.contains(key)) return difference_text(key, value, not_given, place);
+  for (const auto& [key, value] : theirs)
+    if (!ours.contains(key)) return difference_text(key, not_given, value, place);
+  return "";
 }
 
 }  // namespace mappm

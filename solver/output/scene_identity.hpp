@@ -7,14 +7,12 @@
 
 namespace mappm {
 
-/// A scene's declaration (TOML as the reader writes it) without what may change when a run is resumed: the table
-/// [output], and the keys `steps` and `duration` of [run].
-std::string scene_identity(const std::string& text);
-
 /// Hash of a text.
 std::uint64_t text_hash(const std::string& text);
 
-/// The first line in which two identities differ, as "A instead of B"; empty where they are equal.
-std::string first_difference(const std::string& found, const std::string& expected);
+/// The first key that two identities, lines "key = value" sorted by key, do not share, with its value here and there,
+/// or "not given"; empty where they are equal. `place`: where the second one stands, in words.
+std::string first_difference(const std::string& here, const std::string& there,
+                             const std::string& place = "the checkpoint");
 
 }  // namespace mappm

@@ -67,11 +67,12 @@ void ParallelEngine<D>::start_domains() {
   residents_ = std::make_unique<Residents<D>>(model_, halo_->region(), halo_->needed());
   Vec<D, double> in_reach;  // length of a quantum
   for (int axis = 0; axis < D; ++axis) in_reach[axis] = model_.pair.length[axis] / (1.0 + skin);
-  grid_.fit(halo_->region(), in_reach, cells_per_reach(model_, 1.0 + skin));
-  if (model_.shapes.empty()) return;
+  if (model_.terms.fluid) grid_.fit(halo_->region(), in_reach, cells_per_reach(model_, 1.0 + skin));
+  if (!model_.terms.solids) return;
   Vec<D, double> low = in_cutoffs(model_, halo_->region().low), high = in_cutoffs(model_, halo_->region().high);
   double smallest = model_.largest_reach;
-  for (const Shape<D>& shape : model_.shapes) smallest = std::min(smallest, shape.reach);
+  for (const Shape<D>& shape : model_.shapes)
+    if (shape.reach > 0.0) smallest = std::min(smallest, shape.reach);  // of a wall without fluid nothing is placed
   for (int axis = 0; axis < D; ++axis) {
     low[axis] -= solid_margin(model_);
     high[axis] += solid_margin(model_);
@@ -285,6 +286,7 @@ void ParallelEngine<D>::move_solids(const std::vector<HomeReport<D>>& from_other
       });
       add_face_contacts(model_, one, loads_[a]);
     }
+  note_overlaps(model_, state_.step, loads_, overlaps_);
   for (std::size_t a = 0; a < state_.solids.size(); ++a) {
     Solid<D>& solid = state_.solids[a];
     fault_.note({state_.step, FaultPlace::What::solid_motion, solid.id},

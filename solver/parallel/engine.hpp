@@ -38,6 +38,7 @@ class ParallelEngine {
   State<D>& state();
   Sample<D> sample();
   const FirstFault& first_fault() const { return fault_; }
+  const FirstOverlaps& overlaps() const { return overlaps_; }
   PhaseSeconds phase_seconds() const { return watch_.seconds(); }
   Traffic traffic() const;
   /// Steps so far in which the PPs of this process were put in order anew.
@@ -103,6 +104,7 @@ class ParallelEngine {
 
   std::uint64_t orderings_ = 0;
   FirstFault fault_;
+  FirstOverlaps overlaps_;
   Stopwatch watch_;
   Traffic before_;  // of the domains before the present ones
 };

@@ -9,6 +9,7 @@
 
 #include "particles/density_field.hpp"
 #include "particles/first_fault.hpp"
+#include "particles/overlap.hpp"
 #include "particles/pair_trace.hpp"
 #include "particles/state.hpp"
 
@@ -36,6 +37,8 @@ concept Engine = requires(E engine, const E constant) {
   { engine.sample() } -> std::same_as<Sample<D>>;
   /// The first value that left its range on this process, if any did.
   { constant.first_fault() } -> std::same_as<const FirstFault&>;
+  /// Contacts of this process' solids that were deep, for the first time.
+  { constant.overlaps() } -> std::same_as<const FirstOverlaps&>;
   { constant.phase_seconds() } -> std::convertible_to<PhaseSeconds>;
   /// Asks for the trace of one PP in the next step; after it the owner of the PP has the trace, for one step.
   engine.trace_next_step(std::uint64_t{});

@@ -52,14 +52,18 @@ Vec<D, double> vector_between(const Model<D>& model, const Vec<D, double>& a, co
   return r;
 }
 
-}  // namespace
-
+/// Two balls that touch: from `low` to `high`, the solid of the smaller and that of the larger id.
 template <int D>
-void add_contacts(const Model<D>& model, const SolidInStep<D>& one, const SolidInStep<D>& other, SolidLoad<D>& load) {
-  const bool first = one.solid->id < other.solid->id;
-  const SolidInStep<D>& low = first ? one : other;
-  const SolidInStep<D>& high = first ? other : one;
-  if (inverse_mass(low) + inverse_mass(high) == 0.0) return;  // neither can be moved
+struct Touch {
+  std::uint32_t a, b;               // balls of low and high
+  Vec<D, double> lever_a, lever_b;  // of the contact point
+  Vec<D, double> normal;            // from b to a
+  double overlap;
+};
+
+/// Calls visit(touch) for all pairs of balls of two solids that touch.
+template <int D, class Visit>
+void for_each_touch(const Model<D>& model, const SolidInStep<D>& low, const SolidInStep<D>& high, Visit&& visit) {
   const Vec<D, double> centres = vector_between(model, low.solid->x, high.solid->x);
   const double reach = low.shape->reach + high.shape->reach;
   if (dot(centres, centres) >= reach * reach) return;
@@ -74,52 +78,135 @@ void add_contacts(const Model<D>& model, const SolidInStep<D>& one, const SolidI
       const double touch = ball_a.contact_radius + ball_b.contact_radius;
       if (square >= touch * touch || square == 0.0) continue;
       const double distance = square_root(square);
-      ContactPair<D> pair;
-      pair.normal = (1.0 / distance) * r;
-      pair.overlap = touch - distance;
-      const Vec<D, double> lever_a = offset_a - (ball_a.contact_radius - 0.5 * pair.overlap) * pair.normal;
-      const Vec<D, double> lever_b = offset_b + (ball_b.contact_radius - 0.5 * pair.overlap) * pair.normal;
-      pair.velocity = point_velocity(low, lever_a) - point_velocity(high, lever_b);
-      pair.inverse_mass_i = inverse_mass(low);
-      pair.inverse_mass_j = inverse_mass(high);
-      pair.inverse_radius_i = 1.0 / ball_a.contact_radius;
-      pair.inverse_radius_j = 1.0 / ball_b.contact_radius;
-      const std::uint32_t own = first ? a : b, partner_ball = first ? b : a;
-      pair.stretch = kept_stretch(*one.solid, other.solid->id, own, partner_ball);
-      const ContactResult<D> result = contact_force(model.contact, pair, model.dt);
-      const Vec<D, Int128> on_low = contact_impulse(result.force, model.dt);
-      apply(first ? on_low : -on_low, first ? lever_a : lever_b, load.contact);
-      load.kept.push_back({other.solid->id, own, partner_ball, result.stretch});
+      const Vec<D, double> normal = (1.0 / distance) * r;
+      const double overlap = touch - distance;
+      visit(Touch<D>{a, b, offset_a - (ball_a.contact_radius - 0.5 * overlap) * normal,
+                     offset_b + (ball_b.contact_radius - 0.5 * overlap) * normal, normal, overlap});
     }
+}
+
+/// Calls visit(touch) for all balls of a solid that touch the face of a wall; of the touch only `a` has a meaning.
+template <int D, class Visit>
+void for_each_touch(const Model<D>& model, const SolidInStep<D>& one, const WallFace<D>& face, Visit&& visit) {
+  for (std::uint32_t a = 0; a < one.shape->balls.size(); ++a) {
+    const Ball<D>& ball = one.shape->balls[a];
+    const Vec<D, double> offset = rotate(one.solid->orientation, ball.offset);
+    const int axis = face.axis;
+    const double centre = nearest_difference(one.solid->x[axis], face.x) * model.pair.length[axis] + offset[axis];
+    const double height = face.sign * centre;
+    // Deeper than the wall's middle the ball is nearer to the other face, which pushes it the other way.
+    if (height >= ball.contact_radius || height <= -0.5 * face.thickness) continue;
+    Touch<D> touch{a, 0, {}, {}, {}, ball.contact_radius - height};
+    touch.normal[axis] = face.sign;
+    touch.lever_a = offset - (ball.contact_radius - 0.5 * touch.overlap) * touch.normal;
+    visit(touch);
+  }
+}
+
+/// The number of touches, of which each bears as much of a body's mass as the others.
+template <int D, class... Pair>
+double count_touches(const Model<D>& model, const Pair&... pair) {
+  double count = 0.0;
+  for_each_touch(model, pair..., [&](const Touch<D>&) { count += 1.0; });
+  return count;
+}
+
+template <int D>
+std::string names_of(const Model<D>& model, const Overlap& overlap) {
+  if (overlap.partner >= 0.0) return fmt::format("solids {} and {}", overlap.solid, overlap.partner);
+  const WallFace<D>& face = model.faces[Overlap::face_of(overlap.partner)];
+  return fmt::format("solid {} and the wall at {} = {:.6g}", overlap.solid, "xyz"[face.axis],
+                     face.x * model.pair.length[face.axis] * model.units.length);
+}
+
+/// A ball that goes farther in a step than the deepest overlap allowed could go through another one unseen. Empty if
+/// none does.
+template <int D>
+std::string missed_contacts(const Model<D>& model, std::uint64_t step, const Solid<D>& solid) {
+  const Shape<D>& shape = model.shapes[solid.shape];
+  if (is_wall_piece(shape) || solid.motion == SolidMotion::fixed) return {};
+  const double smallest = std::min_element(shape.balls.begin(), shape.balls.end(), [](const auto& a, const auto& b) {
+                            return a.contact_radius < b.contact_radius;
+                          })->contact_radius;
+  const Vec<D, double> moved = model.dt * rigid_velocity(solid, shape).linear;
+  const double radii = square_root(dot(moved, moved)) / smallest;
+  if (radii <= last_overlap) return {};
+  return fmt::format(
+      "step {}: solid {}: moves {:.3g} of its contact radius in one step, more than {}: contacts would be missed; "
+      "lower run.step",
+      step, solid.id, radii, last_overlap);
+}
+
+}  // namespace
+
+template <int D>
+void add_contacts(const Model<D>& model, const SolidInStep<D>& one, const SolidInStep<D>& other, SolidLoad<D>& load) {
+  const bool first = one.solid->id < other.solid->id;
+  const SolidInStep<D>& low = first ? one : other;
+  const SolidInStep<D>& high = first ? other : one;
+  if (inverse_mass(low) + inverse_mass(high) == 0.0) return;  // neither can be moved
+  const double sharing = count_touches(model, low, high);
+  if (sharing == 0.0) return;
+  for_each_touch(model, low, high, [&](const Touch<D>& touch) {
+    ContactPair<D> pair;
+    pair.normal = touch.normal;
+    pair.overlap = touch.overlap;
+    pair.velocity = point_velocity(low, touch.lever_a) - point_velocity(high, touch.lever_b);
+    pair.inverse_mass_i = sharing * inverse_mass(low);
+    pair.inverse_mass_j = sharing * inverse_mass(high);
+    pair.inverse_radius_i = 1.0 / low.shape->balls[touch.a].contact_radius;
+    pair.inverse_radius_j = 1.0 / high.shape->balls[touch.b].contact_radius;
+    const std::uint32_t own = first ? touch.a : touch.b, partner_ball = first ? touch.b : touch.a;
+    pair.stretch = kept_stretch(*one.solid, other.solid->id, own, partner_ball);
+    const ContactResult<D> result = contact_force(model.contact, pair, model.dt);
+    const Vec<D, Int128> on_low = contact_impulse(result.force, model.dt);
+    apply(first ? on_low : -on_low, first ? touch.lever_a : touch.lever_b, load.contact);
+    load.kept.push_back({other.solid->id, own, partner_ball, result.stretch});
+    load.overlap.add({pair.overlap * std::max(pair.inverse_radius_i, pair.inverse_radius_j), low.solid->id,
+                      static_cast<double>(high.solid->id)});
+  });
 }
 
 template <int D>
 void add_face_contacts(const Model<D>& model, const SolidInStep<D>& one, SolidLoad<D>& load) {
   if (inverse_mass(one) == 0.0) return;  // neither can be moved
-  for (const WallFace<D>& face : model.faces)
-    for (std::uint32_t a = 0; a < one.shape->balls.size(); ++a) {
-      const Ball<D>& ball = one.shape->balls[a];
-      const Vec<D, double> offset = rotate(one.solid->orientation, ball.offset);
-      const int axis = face.axis;
-      const double centre = nearest_difference(one.solid->x[axis], face.x) * model.pair.length[axis] + offset[axis];
-      const double height = face.sign * centre;
-      // Deeper than the wall's middle the ball is nearer to the other face, which pushes it the other way.
-      if (height >= ball.contact_radius || height <= -0.5 * face.thickness) continue;
+  for (std::size_t index = 0; index < model.faces.size(); ++index) {
+    const WallFace<D>& face = model.faces[index];
+    const double sharing = count_touches(model, one, face);
+    if (sharing == 0.0) continue;
+    for_each_touch(model, one, face, [&](const Touch<D>& touch) {
       ContactPair<D> pair;
-      pair.normal = {};
-      pair.normal[axis] = face.sign;
-      pair.overlap = ball.contact_radius - height;
-      const Vec<D, double> lever = offset - (ball.contact_radius - 0.5 * pair.overlap) * pair.normal;
-      pair.velocity = point_velocity(one, lever) - face.velocity;
-      pair.inverse_mass_i = inverse_mass(one);
+      pair.normal = touch.normal;
+      pair.overlap = touch.overlap;
+      pair.velocity = point_velocity(one, touch.lever_a) - face.velocity;
+      pair.inverse_mass_i = sharing * inverse_mass(one);
       pair.inverse_mass_j = 0.0;
-      pair.inverse_radius_i = 1.0 / ball.contact_radius;
+      pair.inverse_radius_i = 1.0 / one.shape->balls[touch.a].contact_radius;
       pair.inverse_radius_j = 0.0;
-      pair.stretch = kept_stretch(*one.solid, face.id, a, 0);
+      pair.stretch = kept_stretch(*one.solid, face.id, touch.a, 0);
       const ContactResult<D> result = contact_force(model.contact, pair, model.dt);
-      apply(contact_impulse(result.force, model.dt), lever, load.wall);
-      load.kept.push_back({face.id, a, 0, result.stretch});
-    }
+      apply(contact_impulse(result.force, model.dt), touch.lever_a, load.wall);
+      load.kept.push_back({face.id, touch.a, 0, result.stretch});
+      load.overlap.add({pair.overlap * pair.inverse_radius_i, one.solid->id, Overlap::of_face(index)});
+    });
+  }
+}
+
+template <int D>
+void note_overlaps(const Model<D>& model, std::uint64_t step, const std::vector<SolidLoad<D>>& loads,
+                   FirstOverlaps& first) {
+  Overlap deepest;
+  for (const SolidLoad<D>& load : loads) deepest.add(load.overlap);
+  const auto note = [&](FirstOverlap& noted, double bound, const char* consequence) {
+    if (deepest.depth <= bound || noted.step <= static_cast<double>(step)) return;
+    const std::string stiffness = model.contact.kind == ContactKind::hertz ? "contact.young" : "contact.stiffness";
+    noted = {static_cast<double>(step), deepest,
+             fmt::format("step {}: {} overlap by {:.3g} of the smaller contact radius, more than {}: {}; raise {} or "
+                         "lower the speeds",
+                         step, names_of(model, deepest), deepest.depth, bound, consequence, stiffness)};
+  };
+  note(first.doubtful, doubtful_overlap, "the contact is soft for what acts on it");
+  note(first.last, last_overlap, "they would pass through each other");
 }
 
 template <int D>
@@ -154,11 +241,12 @@ std::string finish_step(const Model<D>& model, std::uint64_t step, Solid<D>& sol
     const RigidVelocity<D> velocity = rigid_velocity(solid, shape);
     return fmt::format(
         "step {}: solid {}: a point of it moves more than rcut/4 in one step (velocity {:.3g} c, rim {:.3g} "
-        "c before it); the step is too long or the contact too stiff",
+        "c before it); the step is too long or the contact too stiff{}",
         step, solid.id, square_root(dot(velocity.linear, velocity.linear)),
-        square_root(dot(velocity.angular, velocity.angular)) * shape.reach);
+        square_root(dot(velocity.angular, velocity.angular)) * shape.reach,
+        model.terms.fluid ? "" : ": lower run.step, or raise fluid.rcut");
   }
-  return {};
+  return model.terms.contact ? missed_contacts(model, step, solid) : std::string();
 }
 
 template <int D>
@@ -226,13 +314,14 @@ void note_motion(RangeFault fault, const FaultPlace& place, const Vec<D, double>
   if (first.follows(place)) first.note(place, motion_message(fault, place.step, place.id, v, sums));
 }
 
-#define MAPPM_INSTANTIATE(D)                                                                                       \
-  template void add_contacts<D>(const Model<D>&, const SolidInStep<D>&, const SolidInStep<D>&, SolidLoad<D>&);     \
-  template void add_face_contacts<D>(const Model<D>&, const SolidInStep<D>&, SolidLoad<D>&);                       \
-  template std::string finish_step<D>(const Model<D>&, std::uint64_t, Solid<D>&, SolidLoad<D>&&, Vec<D, Int128>&); \
-  template ParticleStep<D> particle_step<D>(const Model<D>&, std::uint64_t);                                       \
-  template void note_density<D>(const Model<D>&, const FaultPlace&, double, FirstFault&);                          \
-  template void note_motion<D>(RangeFault, const FaultPlace&, const Vec<D, double>&, const NeighbourSums<D>&,      \
+#define MAPPM_INSTANTIATE(D)                                                                                        \
+  template void add_contacts<D>(const Model<D>&, const SolidInStep<D>&, const SolidInStep<D>&, SolidLoad<D>&);      \
+  template void add_face_contacts<D>(const Model<D>&, const SolidInStep<D>&, SolidLoad<D>&);                        \
+  template void note_overlaps<D>(const Model<D>&, std::uint64_t, const std::vector<SolidLoad<D>>&, FirstOverlaps&); \
+  template std::string finish_step<D>(const Model<D>&, std::uint64_t, Solid<D>&, SolidLoad<D>&&, Vec<D, Int128>&);  \
+  template ParticleStep<D> particle_step<D>(const Model<D>&, std::uint64_t);                                        \
+  template void note_density<D>(const Model<D>&, const FaultPlace&, double, FirstFault&);                           \
+  template void note_motion<D>(RangeFault, const FaultPlace&, const Vec<D, double>&, const NeighbourSums<D>&,       \
                                FirstFault&);
 MAPPM_INSTANTIATE(2)
 MAPPM_INSTANTIATE(3)

@@ -6,6 +6,7 @@
 
 #include "particles/first_fault.hpp"
 #include "particles/model.hpp"
+#include "particles/overlap.hpp"
 #include "particles/state.hpp"
 #include "physics/pseudo_particle.hpp"
 
@@ -32,16 +33,23 @@ struct SolidLoad {
   SolidImpulse<D> contact;  // from other solids
   SolidImpulse<D> wall;     // from faces of walls: an impulse from outside the system
   std::vector<Contact<D>> kept;
+  Overlap overlap;  // the deepest
 };
 
 /// Adds the contacts of `one` with `other` to its load. Each contact is evaluated from the smaller to the larger id,
-/// so that the owners of both solids find the same bits.
+/// so that the owners of both solids find the same bits. Where several balls of the two touch, each contact has an
+/// equal share of the masses: together they lose what one would.
 template <int D>
 void add_contacts(const Model<D>& model, const SolidInStep<D>& one, const SolidInStep<D>& other, SolidLoad<D>& load);
 
 /// The same with the faces of walls.
 template <int D>
 void add_face_contacts(const Model<D>& model, const SolidInStep<D>& one, SolidLoad<D>& load);
+
+/// Keeps what is deeper than a bound for the first time; loads of all solids that this process owns.
+template <int D>
+void note_overlaps(const Model<D>& model, std::uint64_t step, const std::vector<SolidLoad<D>>& loads,
+                   FirstOverlaps& first);
 
 /// Ends the step of a solid that this process owns: body force, kick, drift. What a solid that is not free receives
 /// goes to the outside; what walls and body forces give comes from it. Returns an empty text, or what left its range: a

@@ -15,6 +15,9 @@ constexpr double pi = 3.14159265358979323846;
 /// Of points that lie equally deep in two balls, the first ball's is kept: what counts as equal, rcut.
 constexpr double depth_tolerance = 1e-9;
 
+/// A ball farther than this from an FP covers nothing of its kernel's support, rcut.
+constexpr double support_and_cell = 1.1;
+
 template <int D>
 double ball_volume(double radius) {
   return D == 2 ? pi * radius * radius : 4.0 / 3.0 * pi * radius * radius * radius;
@@ -77,7 +80,8 @@ bool is_deepest(const FrozenParticle<D>& point, std::size_t own, const std::vect
 template <int D, class Kernel>
 void set_own_density(Shape<D>& shape, double number_density) {
   const auto quadrature = SupportQuadrature<D>::of(Kernel{});
-  const auto depth_at = [&](const Vec<D, double>& x) { return depth_in_union(x, shape.balls); };
+  std::vector<Ball<D>> seen;
+  const auto depth_at = [&](const Vec<D, double>& x) { return depth_in_union(x, seen); };
   const bool single = shape.balls.size() == 1;
   double known_depth = -1.0;
   double known_density = 0.0;
@@ -85,6 +89,9 @@ void set_own_density(Shape<D>& shape, double number_density) {
     if (!single || point.depth != known_depth) {
       const Vec<D, double> x = single ? (shape.balls[0].radius - point.depth) * first_axis<D>() : point.offset;
       known_depth = point.depth;
+      seen.clear();
+      for (const Ball<D>& ball : shape.balls)
+        if (depth_in_ball(x, ball) > -support_and_cell) seen.push_back(ball);
       known_density = to_density_quanta(number_density * quadrature.inside_share(x, depth_at));
     }
     point.own_density = known_density;
@@ -103,8 +110,8 @@ void set_single_ball_mass(Shape<D>& shape, double density) {
 }
 
 template <int D>
-void set_union_mass(Shape<D>& shape, double density, double cell) {
-  const Moments<D> moments = integrate_union(shape.balls, cell);
+void set_union_mass(Shape<D>& shape, double density) {
+  const Moments<D> moments = integrate_union(shape.balls);
   for (Ball<D>& ball : shape.balls) ball.offset -= moments.centre;
   shape.volume = moments.volume;
   shape.mass = density * moments.volume;
@@ -141,7 +148,7 @@ Shape<D> make_body(std::vector<Ball<D>> balls, double density, const FrozenLayer
   if (shape.balls.size() == 1)
     set_single_ball_mass(shape, density);
   else
-    set_union_mass(shape, density, layer.spacing / 8.0);
+    set_union_mass(shape, density);
   for (std::size_t own = 0; own < shape.balls.size(); ++own) {
     const Ball<D>& ball = shape.balls[own];
     for (const FrozenParticle<D>& point : fill_ball(ball, layer))

@@ -12,12 +12,12 @@ namespace mappm {
 struct FrozenLayer {
   double spacing;          // dx
   double number_density;   // of FPs, that of the fluid
-  double thickness = 1.0;  // of the shell of FPs below the surface: rcut
+  double thickness = 1.0;  // of the shell of FPs below the surface: rcut; 0 where no fluid sees the body
 };
 
 /// A body made of balls: FPs in rings (2D) or shells (3D) at depths (k + 1/2) dx, as dense as the fluid. Points of one
 /// ball that lie deeper inside another are left out. `density`: of its matter, PP masses per rcut^D. A single ball has
-/// its closed-form mass and inertia; for several, the union is integrated on a grid of dx / 8 (Eigen inverts in 3D).
+/// its closed-form mass and inertia; those of several are of their union (`integrate_union`; Eigen inverts in 3D).
 template <int D, class Kernel>
 Shape<D> make_body(std::vector<Ball<D>> balls, double density, const FrozenLayer& layer);
 

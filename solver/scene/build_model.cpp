@@ -44,7 +44,7 @@ Model<D> start_model(const Scene& scene, const Lattice<D>& lattice) {
 struct Matter {
   std::uint64_t fluid_particles = 0;
   double free_mass = 0.0;
-  double lightest = HUGE_VAL;    // free solid
+  double lightest = HUGE_VAL;    // free solid, of a composite the share of one ball: all may touch at once
   double lightest_radius = 0.0;  // for contact, rcut
   std::size_t free_solids = 0, ball_solids = 0;
 };
@@ -62,8 +62,9 @@ Matter count_matter(const Scene& scene, const Model<D>& model, const Lattice<D>&
     ++matter.free_solids;
     const Shape<D>& shape = model.shapes[solid.shape];
     matter.free_mass += shape.mass;
-    if (shape.mass >= matter.lightest) continue;
-    matter.lightest = shape.mass;
+    const double share = shape.mass / static_cast<double>(shape.balls.size());
+    if (share >= matter.lightest) continue;
+    matter.lightest = share;
     matter.lightest_radius = shape.balls[0].contact_radius;
   }
   if (scene.fluid.particles && matter.fluid_particles == 0)
@@ -75,7 +76,7 @@ template <int D>
 Terms find_terms(const Scene& scene, const Matter& matter) {
   Terms terms;
   terms.fluid = scene.fluid.particles;
-  terms.solids = !scene.bodies.empty();
+  terms.solids = terms.fluid ? !scene.bodies.empty() : matter.ball_solids > 0;
   terms.transport = terms.fluid && scene.fluid.transport;
   terms.extrapolated = terms.fluid && terms.solids && scene.fluid.no_slip == NoSlip::extrapolated;
   terms.single = terms.fluid && scene.fluid.precision == Precision::single;
@@ -208,14 +209,14 @@ StepLimits find_limits(const Scene& scene, const Model<D>& model, const Matter& 
   return limits;
 }
 
-/// a, as the scene gives it. By default it goes with nu / (c h), for what the shift stirs up at a wall is damped by
-/// viscosity: 5000 times that, but from 160 on 500 times. With more a column of fluid does not come to rest.
+/// a, as the scene gives it. By default it is 5000 nu / (c h), for what the shift stirs up at a wall is damped by viscosity,
+/// but at most 160. With more a column of fluid does not come to rest.
 template <int D>
 double shift_shear(const Scene& scene, const Model<D>& model) {
   if (scene.fluid.shift_shear) return *scene.fluid.shift_shear;
   const double h = 0.5 * scene.fluid.cutoff;
   const double viscosity = scene.fluid.viscosity / scene.fluid.density / (model.units.velocity * h);
-  return std::min(5000.0 * viscosity, std::max(160.0, 500.0 * viscosity));
+  return std::min(160.0, 5000.0 * viscosity);
 }
 
 /// Constants of the pair law; they carry the step. shift: u dt with u = kappa c h (V_i^2 + V_j^2) / (2 V_0) G r, of
@@ -295,7 +296,7 @@ BuiltModel<D> make_model(const Scene& scene) {
   const double step = scene.run.step > 0.0 ? scene.run.step : scene.run.step_factor * limits.ruling().usual;
   check_step(scene, step, limits);
   model.dt = step / model.units.time();
-  fold_pair_law(scene, lattice, model);
+  if (model.terms.fluid) fold_pair_law(scene, lattice, model);
   fold_forces(scene, matter, model);
   BuiltModel<D> built{model, matter.fluid_particles, limits, {}};
   built.warnings = scene_warnings(scene, model, lattice, limits);

@@ -22,6 +22,16 @@ std::string joined(const std::vector<std::string>& names, const char* quote) {
   return text;
 }
 
+/// The shortest text that reads back as the same number.
+std::string value_text(double value) { return fmt::format("{}", value); }
+
+std::string value_text(const Triple& value, int dimension) {
+  std::string text;
+  for (int axis = 0; axis < dimension; ++axis)
+    text += (axis > 0 ? ", " : "") + value_text(value[static_cast<std::size_t>(axis)]);
+  return "[" + text + "]";
+}
+
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -103,22 +113,30 @@ double Fields::number_of(const toml::node& node, const std::string& key, Quantit
 }
 
 double Fields::number(const std::string& key, Quantity quantity, Sign sign) const {
-  return number_of(require(key), key, quantity, sign);
+  const double value = number_of(require(key), key, quantity, sign);
+  keep(key, value_text(value));
+  return value;
 }
 
 double Fields::number(const std::string& key, Quantity quantity, Sign sign, double fallback) const {
-  return has(key) ? number(key, quantity, sign) : fallback;
+  if (has(key)) return number(key, quantity, sign);
+  keep(key, value_text(fallback));
+  return fallback;
 }
 
 std::uint64_t Fields::count(const std::string& key, std::optional<std::uint64_t> fallback) const {
-  if (fallback && !has(key)) return *fallback;
-  const auto* integer = require(key).as_integer();
-  if (!integer)
-    fail(key, fmt::format("wrong type; write a whole number without a decimal point, at most {}",
-                          std::numeric_limits<std::int64_t>::max()));
-  const std::int64_t value = integer_of(*integer, key);
-  if (value < 0) fail(key, "must not be negative; write 0 or more");
-  return static_cast<std::uint64_t>(value);
+  std::uint64_t count = fallback.value_or(0);
+  if (!fallback || has(key)) {
+    const auto* integer = require(key).as_integer();
+    if (!integer)
+      fail(key, fmt::format("wrong type; write a whole number without a decimal point, at most {}",
+                            std::numeric_limits<std::int64_t>::max()));
+    const std::int64_t value = integer_of(*integer, key);
+    if (value < 0) fail(key, "must not be negative; write 0 or more");
+    count = static_cast<std::uint64_t>(value);
+  }
+  keep(key, std::to_string(count));
+  return count;
 }
 
 std::uint64_t Fields::steps(const std::string& key, std::optional<std::uint64_t> fallback) const {
@@ -129,10 +147,14 @@ std::uint64_t Fields::steps(const std::string& key, std::optional<std::uint64_t>
 }
 
 bool Fields::flag(const std::string& key, bool fallback) const {
-  if (!has(key)) return fallback;
-  const auto* value = require(key).as_boolean();
-  if (!value) fail(key, "wrong type; write true or false");
-  return value->get();
+  bool flag = fallback;
+  if (has(key)) {
+    const auto* value = require(key).as_boolean();
+    if (!value) fail(key, "wrong type; write true or false");
+    flag = value->get();
+  }
+  keep(key, flag ? "true" : "false");
+  return flag;
 }
 
 bool Fields::is_word(const std::string& key) const {
@@ -143,6 +165,7 @@ bool Fields::is_word(const std::string& key) const {
 std::string Fields::word(const std::string& key) const {
   const auto* value = require(key).as_string();
   if (!value) fail(key, "wrong type; write a text in quotes");
+  keep(key, value->get());
   return value->get();
 }
 
@@ -157,18 +180,27 @@ Triple Fields::triple_of(const toml::node& node, const std::string& key, Quantit
 }
 
 Triple Fields::vector(const std::string& key, Quantity quantity) const {
-  return triple_of(require(key), key, quantity);
+  const Triple value = triple_of(require(key), key, quantity);
+  keep(key, value_text(value, source_->dimension));
+  return value;
 }
 
 Triple Fields::vector(const std::string& key, Quantity quantity, const Triple& fallback) const {
-  return has(key) ? vector(key, quantity) : fallback;
+  if (has(key)) return vector(key, quantity);
+  keep(key, value_text(fallback, source_->dimension));
+  return fallback;
 }
 
 std::vector<Triple> Fields::vectors(const std::string& key, Quantity quantity) const {
   const toml::array* array = require(key).as_array();
   if (!array || array->empty()) fail(key, "wrong type; write a list of points [[x, y], ...]");
   std::vector<Triple> triples;
-  for (const toml::node& node : *array) triples.push_back(triple_of(node, key, quantity));
+  std::string text;
+  for (const toml::node& node : *array) {
+    triples.push_back(triple_of(node, key, quantity));
+    text += (text.empty() ? "" : ", ") + value_text(triples.back(), source_->dimension);
+  }
+  keep(key, "[" + text + "]");
   return triples;
 }
 
@@ -177,7 +209,12 @@ std::vector<double> Fields::sides(const std::string& key) const {
   if (!array || (array->size() != 2 && array->size() != 3))
     fail(key, "wrong type; write two or three sides, e.g. [1.0, 2.0]");
   std::vector<double> values;
-  for (const toml::node& node : *array) values.push_back(number_of(node, key, Quantity::length, Sign::positive));
+  Triple sides{};
+  for (const toml::node& node : *array) {
+    sides[values.size()] = number_of(node, key, Quantity::length, Sign::positive);
+    values.push_back(sides[values.size()]);
+  }
+  keep(key, value_text(sides, static_cast<int>(values.size())));
   return values;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,6 +22,8 @@ struct Source {
   std::string file;
   Units units = Units::dimensionless;
   int dimension = 2;
+  /// What was understood, by path: values in the scene's units, and defaults where a key is not given.
+  mutable std::map<std::string, std::string> values = {};
 };
 
 class Fields {
@@ -62,7 +65,10 @@ class Fields {
   }
   template <class Choice>
   Choice choice(const std::string& key, const Names<Choice>& names, Choice fallback) const {
-    return has(key) ? choice(key, names) : fallback;
+    if (has(key)) return choice(key, names);
+    for (const auto& [name, value] : names)
+      if (value == fallback) keep(key, name);
+    return fallback;
   }
 
   std::optional<Fields> table(const std::string& key) const;
@@ -79,6 +85,7 @@ class Fields {
   const Source& source() const { return *source_; }
 
  private:
+  void keep(const std::string& key, const std::string& value) const { source_->values[path(key)] = value; }
   const toml::node* find(const std::string& key) const;
   const toml::node& require(const std::string& key) const;
   std::int64_t integer_of(const toml::value<std::int64_t>& integer, const std::string& key) const;

@@ -77,7 +77,8 @@ void check_margin(const Scene& scene, const Model<D>& model) {
     if (const double side = scene.box[static_cast<std::size_t>(axis)]; side < needed)
       throw InputError(
           scene.file, "box.size", fmt::format("{}", side),
-          fmt::format("too small for its solids and the reach of their forces; it must be at least {:.6g}", needed));
+          fmt::format("too small for its solids and the reach of their forces; it must be at least {:.6g}{}", needed,
+                      scene.fluid.particles ? "" : ", or fluid.rcut smaller"));
 }
 
 template <int D>
@@ -92,6 +93,7 @@ void check_box(const Scene& scene, const Lattice<D>& lattice) {
                                    "fluid.spacing",
                                    2.0 * scene.fluid.cutoff));
   }
+  if (!scene.fluid.particles) return;
   if (scene.fluid.cutoff <= scene.fluid.spacing)
     throw InputError(scene.file, "fluid.rcut", fmt::format("{}", scene.fluid.cutoff),
                      fmt::format("must exceed fluid.spacing = {}; 3 spacings are usual", scene.fluid.spacing));
@@ -142,7 +144,8 @@ void check_solids(const Scene& scene, const Model<D>& model) {
     }
     if (model.shapes[i].mass > heaviest_solid)
       throw InputError(scene.file, body.key + ".density", fmt::format("{}", body.density),
-                       fmt::format("a solid has the mass of {:.3g} PPs, more than {:.3g}; lower it",
+                       fmt::format("a solid has the mass of {:.3g} PPs, more than {:.3g}; lower it or enlarge "
+                                   "fluid.spacing",
                                    model.shapes[i].mass, heaviest_solid));
     const double width = 2.0 * model.shapes[i].reach * scene.fluid.cutoff;
     for (std::size_t axis = 0; axis < D; ++axis) check_width(scene, body, "the solid", width, scene.box[axis]);
@@ -150,8 +153,10 @@ void check_solids(const Scene& scene, const Model<D>& model) {
   check_overlaps(scene);
 }
 
+/// Without fluid the sound speed is but a unit.
 template <int D>
 void check_velocities(const Scene& scene, const Model<D>& model) {
+  if (!scene.fluid.particles) return;
   const double sound_speed = model.units.velocity;
   double speed = largest_declared_speed(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)

@@ -161,6 +161,14 @@ OutputScene read_output(const Fields& table) {
   return output;
 }
 
+/// See `Scene::identity`.
+std::string identity_of(const Source& source) {
+  std::string lines;
+  for (const auto& [key, value] : source.values)
+    if (!key.starts_with("output.") && key != "run.steps" && key != "run.duration") lines += key + " = " + value + "\n";
+  return lines;
+}
+
 Scene read_tree(const toml::table& tree, const std::string& file) {
   Scene scene;
   scene.file = file;
@@ -181,6 +189,7 @@ Scene read_tree(const toml::table& tree, const std::string& file) {
   if (const auto output = root.table("output")) scene.output = read_output(*output);
   root.has("case");  // for the verification suite, which checks it itself
   root.finish();
+  scene.identity = identity_of(source);
   return scene;
 }
 

@@ -124,9 +124,11 @@ struct OutputScene {
 struct Scene {
   std::string file;
   std::string name;
-  /// The declaration as read, overrides applied and keys sorted, without the table [case]: kept in run.json and
-  /// checkpoints.
+  /// The declaration as read, overrides applied and keys sorted, without the table [case]: kept in run.json.
   std::string text;
+  /// What the solver understood of it, a line "key = value" each, defaults included, without what may change when a run
+  /// is resumed: the table [output], and the keys `steps` and `duration` of [run]. Kept in checkpoints.
+  std::string identity;
   int dimension = 2;
   Units units = Units::si;
   Triple box{};  // sides, m

@@ -53,10 +53,13 @@ std::uint64_t pieces_of(const Scene& scene, const BodyScene& wall, const Lattice
   return nodes_of(scene, wall, lattice, axis) / nodes_per_piece(scene, wall, lattice, axis);
 }
 
+/// What no fluid sees needs no FPs; of a wall without fluid its faces are left, which solids touch.
+bool has_pieces(const Scene& scene, const BodyScene& body) { return is_wall(body) && scene.fluid.particles; }
+
 /// Kinds of pieces of a wall: one, but for a limited wall, which has a first, a last and, between them, a middle one.
 template <int D>
 std::uint64_t kinds_of_pieces(const Scene& scene, const BodyScene& wall, const Lattice<D>& lattice) {
-  if (!is_wall(wall) || !wall.extent) return 1;
+  if (!has_pieces(scene, wall) || !wall.extent) return 1;
   return std::min<std::uint64_t>(3, pieces_of(scene, wall, lattice, wall.extent->axis));
 }
 
@@ -102,10 +105,10 @@ Shape<D> make_ball_shape(const Scene& scene, const BodyScene& body, const Model<
     balls.push_back(ball);
   }
   const double density = body.density / scene.fluid.density * model.rest_density;
+  FrozenLayer layer{model.spacing, model.rest_density};
+  if (!scene.fluid.particles) layer.thickness = 0.0;
   Shape<D> shape;
-  with_pair_law(model, [&](auto kernel, auto) {
-    shape = make_body<D, decltype(kernel)>(balls, density, {model.spacing, model.rest_density});
-  });
+  with_pair_law(model, [&](auto kernel, auto) { shape = make_body<D, decltype(kernel)>(balls, density, layer); });
   shape.rotates = body.rotates;
   return shape;
 }
@@ -168,15 +171,13 @@ double wall_middle(const Scene& scene, const BodyScene& wall) {
 template <int D>
 std::vector<Shape<D>> make_shapes(const Scene& scene, const Model<D>& model, const Lattice<D>& lattice) {
   std::vector<Shape<D>> shapes;
-  for (const BodyScene& body : scene.bodies) {
-    shapes.push_back(is_wall(body) ? make_wall_shape(scene, body, model, lattice, 0)
-                                   : make_ball_shape(scene, body, model));
-  }
+  for (const BodyScene& body : scene.bodies)
+    shapes.push_back(has_pieces(scene, body) ? make_wall_shape(scene, body, model, lattice, 0)
+                     : is_wall(body)         ? Shape<D>{}
+                                             : make_ball_shape(scene, body, model));
   for (const BodyScene& body : scene.bodies)
     for (std::uint64_t kind = 1; kind < kinds_of_pieces(scene, body, lattice); ++kind)
       shapes.push_back(make_wall_shape(scene, body, model, lattice, kind));
-  if (!scene.fluid.particles)
-    for (Shape<D>& shape : shapes) shape.frozen.clear();
   return shapes;
 }
 
@@ -187,7 +188,7 @@ std::vector<PlacedSolid<D>> place_solids(const Scene& scene, const Model<D>& mod
   auto further_shapes = static_cast<std::uint32_t>(scene.bodies.size());
   for (std::size_t index = 0; index < scene.bodies.size(); ++index) {
     const BodyScene& body = scene.bodies[index];
-    if (is_wall(body)) place_wall(scene, index, lattice, group++, further_shapes, solids);
+    if (has_pieces(scene, body)) place_wall(scene, index, lattice, group++, further_shapes, solids);
     further_shapes += static_cast<std::uint32_t>(kinds_of_pieces(scene, body, lattice) - 1);
     const auto number = static_cast<std::uint32_t>(index);
     for (std::size_t member = 0; member < body.positions.size(); ++member)

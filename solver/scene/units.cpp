@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <stdexcept>
+#include <utility>
 
 namespace mappm {
 
@@ -59,20 +60,53 @@ std::string known_units(Quantity quantity) {
   return names;
 }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
+/// Letters that look like others or like nothing, as keyboards and texts have them, and what is meant.
+constexpr std::pair<std::string_view, std::string_view> spellings[] = {
+    {"\t", " "},      // tab
+    {"\u00a0", " "},  // no-break space
+    {"\u2007", " "},  // figure space
+    {"\u2009", " "},  // thin space
+    {"\u202f", " "},  // narrow no-break space
+    {"\u00b7", " "},  // middle dot, as in Pa s
+    {"\u2212", "-"},  // minus sign
+    {"\u00b5", "u"},  // micro sign
+    {"\u03bc", "u"},  // Greek mu
+    {"\u00b2", "2"},  // superscripts
+    {"\u00b3", "3"},  //
+};
+
+/// In plain letters, with single spaces and none at the ends.
+std::string plain(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    std::string_view letter = text.substr(0, 1), meant = letter;
+    for (const auto& [written, sign] : spellings)
+      if (text.starts_with(written)) {
+        letter = written;
+        meant = sign;
+      }
+    text.remove_prefix(letter.size());
+    if (meant != " " || !(result.empty() || result.back() == ' ')) result += meant;
+  }
+  if (result.ends_with(' ')) result.pop_back();
+  return result;
 }
+
+bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
 
 }  // namespace
 
 double value_in_si(std::string_view text, Quantity quantity) {
-  const std::string_view whole = trimmed(text);
+  const std::string whole = plain(text);
+  const char* const begin = whole.data() + (whole.starts_with('+') && !whole.starts_with("+-") ? 1 : 0);
+  const char* const last = whole.data() + whole.size();
   double value = 0.0;
-  const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
+  const auto [end, error] = std::from_chars(begin, last, value);
+  if (error == std::errc::result_out_of_range) throw std::invalid_argument("is too large or too small for a number");
   if (error != std::errc{}) throw std::invalid_argument("is not a number; write a number");
-  const std::string_view name = trimmed(whole.substr(static_cast<std::size_t>(end - whole.data())));
+  if (last - end > 1 && *end == ',' && is_digit(end[1]))
+    throw std::invalid_argument("has a comma in its number; write a decimal point, and no sign between thousands");
+  const std::string name(end + (end != last && *end == ' ' ? 1 : 0), last);
   if (quantity == Quantity::plain) throw std::invalid_argument("has no unit; write the number without quotes");
   for (const Unit& unit : units)
     if (unit.quantity == quantity && unit.name == name) return value * unit.times / unit.over;

@@ -63,8 +63,8 @@ template <int D>
 SerialEngine<D>::SerialEngine(const Model<D>& model, State<D>&& state, Neighbours neighbours)
     : model_(model),
       state_(std::move(state)),
-      fluid_cells_(model.box, neighbours),
-      frozen_cells_(model.box, neighbours) {}
+      fluid_cells_(model.box, model.terms.fluid ? neighbours : Neighbours::all_pairs),  // without fluid no cells
+      frozen_cells_(model.box, model.terms.fluid ? neighbours : Neighbours::all_pairs) {}
 
 /// One step of the method:
 ///   1. place the FPs of every solid and find neighbours,
@@ -318,6 +318,7 @@ void SerialEngine<D>::move_solids() {
         if (a != b) add_contacts(model_, bodies_[a], bodies_[b], loads[a]);
       add_face_contacts(model_, bodies_[a], loads[a]);
     }
+  note_overlaps(model_, state_.step, loads, overlaps_);
   for (std::size_t a = 0; a < state_.solids.size(); ++a) {
     Solid<D>& solid = state_.solids[a];
     fault_.note({state_.step, FaultPlace::What::solid_motion, solid.id},

@@ -22,6 +22,7 @@ class SerialEngine {
   State<D>& state() { return state_; }
   Sample<D> sample();
   const FirstFault& first_fault() const { return fault_; }
+  const FirstOverlaps& overlaps() const { return overlaps_; }
   void trace_next_step(std::uint64_t particle) { traced_particle_ = particle; }
   const MaybeTrace<D>& last_trace() const { return trace_; }
   PhaseSeconds phase_seconds() const { return {{"pairs", pair_seconds_}, {"integrate", integrate_seconds_}}; }
@@ -66,6 +67,7 @@ class SerialEngine {
   MaybeTrace<D> trace_;
 
   FirstFault fault_;
+  FirstOverlaps overlaps_;
   double pair_seconds_ = 0.0, integrate_seconds_ = 0.0;
 };
 

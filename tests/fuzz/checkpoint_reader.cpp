@@ -27,7 +27,7 @@ namespace mappm {
 
 namespace {
 
-constexpr const char* scene_text = "[fluid]\nspacing = 0.5\n[run]\nsteps = 10\n";
+constexpr const char* scene_text = "fluid.spacing = 0.5\nrun.relax = 0\n";
 
 constexpr std::array data_sets{"/scene",     "/fluid/id",  "/fluid/x_x",    "/fluid/x_y",
                                "/fluid/v_x", "/fluid/v_y", "/solids/words", "/solids/contacts"};

@@ -45,7 +45,7 @@ def override(*settings: str) -> Options:
         (["fluid.spacing=0.0"], ["fluid.spacing", "0"]),
         (["body.0.radius=0.6", "body.0.random.count=1"], ["body.0", "box side 1"]),
         (["body.0.random.count=200"], ["body.0.random", "of 200 solids fit"]),
-        (["run.step_factor=1.4"], ["run.step_factor", "1.4", "sound", "lower it"]),
+        (["run.step_factor=1.6"], ["run.step_factor", "1.6", "sound", "lower it"]),
         (["fluid.sound_speed=0.01"], ["fluid.sound_speed", "0.01"]),
         (["units=SI", "fluid.density=5 um"], ["fluid.density", "5 um"]),
         (["body.0.shape=sphere"], ["body.0.shape", "disc"]),

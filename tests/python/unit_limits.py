@@ -65,7 +65,7 @@ def test_the_shift_has_its_share_in_the_last_step(tmp_path: Path, kernel: str, r
 
 
 def friction_at_a_wall(kernel: str, largest: float) -> float:
-    """Of a PP at 0.1 dx from a plane wall over that in the fluid, where the shortest waves set two PPs against each
+    """Of a PP that touches a plane wall over that in the fluid, where the shortest waves set two PPs against each
     other: a pair of PPs counts twice, one with an FP once. FPs lie at depths of k + 1/2 spacings; their beta is
     1 + depth / distance, the distance being a quarter of a spacing at least."""
     gradient, most = KERNELS[kernel][2], int(REACH) + 1
@@ -76,7 +76,7 @@ def friction_at_a_wall(kernel: str, largest: float) -> float:
 
     rows = [row(k) for k in range(most)]
     bulk = rows[0] + 2 * sum(rows[1:])
-    wall = sum(min(1 + (k + 0.5) / 0.25, largest) * row(0.1 + k + 0.5) for k in range(most))
+    wall = sum(min(1 + (k + 0.5) / 0.25, largest) * row(k + 0.5) for k in range(most))
     return (sum(rows) + 0.5 * wall) / bulk
 
 

@@ -15,6 +15,8 @@ namespace {
 using testing_tools::refusal;
 using testing_tools::ThreadGroup;
 
+using What = FaultPlace::What;
+
 const FirstFault none;
 
 FirstFault fault_of(const FaultPlace& place, const std::string& text) {
@@ -76,7 +78,6 @@ TEST(Poll, agrees_on_the_shortest_wait) {
 }
 
 TEST(Poll, gives_the_first_fault_of_all_to_all) {
-  using What = FaultPlace::What;
   // The lowest step; then what a step looks at first; then the lowest id; then the lowest FP.
   const FaultPlace places[][3] = {
       {{9, What::fluid_motion, 0, 0}, {}, {8, What::fluid_motion, 5, 0}},
@@ -96,7 +97,6 @@ TEST(Poll, gives_the_first_fault_of_all_to_all) {
 }
 
 TEST(FirstFault, keeps_the_first_whatever_the_order_of_their_coming) {
-  using What = FaultPlace::What;
   FirstFault fault;
   EXPECT_FALSE(fault.any());
   fault.note({7, What::fluid_density, 1, 0}, "");
@@ -106,6 +106,43 @@ TEST(FirstFault, keeps_the_first_whatever_the_order_of_their_coming) {
   fault.note({7, What::solid_motion, 3, 0}, "solid 3");
   fault.note({8, What::fluid_density, 0, 0}, "a step later");
   EXPECT_EQ(fault.text(), "solid 2");
+}
+
+FirstOverlap overlap(double step, double depth, std::uint64_t solid, const char* text) {
+  return {step, {depth, solid, 9.0}, text};
+}
+
+TEST(Poll, warns_all_once_of_the_deepest_overlap_of_the_first_step) {
+  std::atomic<int> right = 0, warnings = 0;
+  ThreadGroup(4).run([&](const Group& group) {
+    Poll poll(group, 0, [&](const std::string& text) {
+      ++warnings;
+      right += text == "deepest";
+    });
+    const FirstOverlap seen[] = {overlap(8, 0.4, 1, "later"), overlap(7, 0.2, 1, "shallow"),
+                                 overlap(7, 0.3, 3, "of a larger id"), overlap(7, 0.3, 2, "deepest")};
+    poll.agree_to_stop(5, 0.0, none);
+    poll.note(FirstOverlaps{seen[group.rank()], {}});
+    poll.agree_to_stop(10, 0.0, none);
+    poll.agree_to_stop(20, 0.0, none);
+  });
+  EXPECT_EQ(warnings, 4);
+  EXPECT_EQ(right, 4);
+}
+
+TEST(Poll, an_overlap_beyond_the_last_ends_the_run_for_all_unless_another_value_left_its_range_before) {
+  std::atomic<int> seen = 0;
+  ThreadGroup(2).run([&](const Group& group) {
+    Poll poll(group, 0);
+    if (group.rank() == 1) poll.note(FirstOverlaps{{}, overlap(8, 0.6, 1, "too deep")});
+    const FirstFault later = fault_of({9, What::fluid_motion, 0, 0}, group.is_first() ? "followed" : "");
+    seen += refusal<RangeError>([&] { poll.agree_to_stop(10, 0.0, later); }) == "too deep";
+    Poll other(group, 0);
+    if (group.rank() == 1) other.note(FirstOverlaps{{}, overlap(8, 0.6, 1, "followed")});
+    const FirstFault before = fault_of({7, What::fluid_motion, 0, 0}, group.is_first() ? "fluid" : "");
+    seen += refusal<RangeError>([&] { other.agree_to_stop(10, 0.0, before); }) == "fluid";
+  });
+  EXPECT_EQ(seen, 4);
 }
 
 }  // namespace

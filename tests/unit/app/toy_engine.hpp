@@ -31,6 +31,7 @@ class ToyEngine {
   State<2>& state() { return state_; }
   Sample<2> sample() { return {state_, {std::vector<double>(state_.fluid.size(), 8.0), {}}}; }
   const FirstFault& first_fault() const { return fault_; }
+  const FirstOverlaps& overlaps() const { return overlaps_; }
   PhaseSeconds phase_seconds() const { return {{"toy", 0.5}}; }
   void trace_next_step(std::uint64_t particle) { trace_ = StepTrace<2>{state_.step, particle, {}}; }
   const MaybeTrace<2>& last_trace() const { return trace_; }
@@ -40,6 +41,7 @@ class ToyEngine {
  private:
   State<2> state_;
   FirstFault fault_;
+  FirstOverlaps overlaps_;
   MaybeTrace<2> trace_;
   std::optional<SmallDisk> disk_;
 };

@@ -19,7 +19,7 @@ using testing_tools::refusal;
 using testing_tools::ScratchFolder;
 using testing_tools::SmallDisk;
 
-constexpr const char* scene = "[fluid]\nspacing = 0.5\n";
+constexpr const char* scene = "fluid.spacing = 0.5\n";
 
 class CheckpointFolder : public testing::Test {
  protected:
@@ -76,7 +76,7 @@ TEST_F(CheckpointFolder, offers_nothing_that_is_not_sound) {
   fs::resize_file(newer, 3000);
   fs::resize_file(older, 3000);
   EXPECT_FALSE(contains(refused(newer), "is sound"));
-  EXPECT_FALSE(contains(refused(newer, "[fluid]\nspacing = 0.7\n"), "is sound"));
+  EXPECT_FALSE(contains(refused(newer, "fluid.spacing = 0.7\n"), "is sound"));
 }
 
 TEST_F(CheckpointFolder, passes_over_a_damaged_one_and_says_so) {

@@ -80,15 +80,15 @@ TEST_F(AFolder, is_cleared_of_what_a_run_wrote_and_of_nothing_else) {
 }
 
 TEST_F(AFolder, is_resumed_by_a_run_of_the_same_scene) {
-  write("run.json", R"({"scene": {"text": "[fluid]\nspacing = 1\n[run]\nsteps = 5\n"}})");
+  write("run.json", R"({"scene": {"identity": "fluid.spacing = 1\n"}})");
   write("series.csv");
   write("checkpoints/checkpoint_2.h5.partial");
   const RunFolder folder(path(), Entry::resume, group_);
-  folder.open("[fluid]\nspacing = 1\n[run]\nsteps = 9\n", group_);
+  folder.open("fluid.spacing = 1\n", group_);
   EXPECT_TRUE(fs::exists(path() / "series.csv"));
   EXPECT_FALSE(fs::exists(path() / "checkpoints/checkpoint_2.h5.partial")) << "what a kill left half written";
-  const std::string message = refusal<InputError>([&] { folder.open("[fluid]\nspacing = 2\n", group_); });
-  EXPECT_TRUE(contains(message, "run.json: is of another scene: this one has 'spacing = 2'")) << message;
+  const std::string message = refusal<InputError>([&] { folder.open("fluid.spacing = 2\n", group_); });
+  EXPECT_TRUE(contains(message, "run.json: is of another scene: fluid.spacing = 2 here and 1 in run.json")) << message;
 }
 
 TEST_F(AFolder, whose_record_is_damaged_is_not_resumed) {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
+#include <vector>
 
 #include "unit/particles/hand_model.hpp"
 
@@ -102,6 +104,86 @@ TEST(SolidContact, names_the_balls_that_touch) {
   EXPECT_EQ(turned.on_second.kept[0].other, 0u);
   EXPECT_EQ(turned.on_first.kept[0].own, 0u);
   EXPECT_EQ(turned.on_first.kept[0].other, 1u);
+}
+
+TEST(SolidContact, balls_that_touch_at_once_share_the_mass) {
+  // A dumb-bell that lands flat on a wide one, 3/4 of the way: two contacts, each of overlap 1/8 as above, and each
+  // damped as half of the mass: together 2 k and the dashpot of one contact of stiffness 2 k.
+  Model<2> model = hand_model<2>();
+  model.shapes[0].balls = {{{{0.75}}, 1.0, 1.0}, {{{-0.75}}, 1.0, 1.0}};
+  model.shapes[0].reach = 1.75;
+  model.contact = make_contact_law(ContactKind::linear, 100.0, 0.0, 0.0, 0.8, 0.0);
+  const Solid<2> low = hand_solid(model, 0, 0, {{4.0, 2.0}}, {});
+  const Solid<2> high = hand_solid(model, 1, 1, {{4.0, 3.375}}, {{0.0, -0.25}});
+  const Both<2> loads = touch(model, low, high);
+  ASSERT_EQ(loads.on_first.kept.size(), 2u);
+  const double effective = 1.0 / (1.0 / 2.0 + 1.0 / 4.0), stiffness = 2.0 * 100.0;
+  const double force = stiffness * 0.125 - 2.0 * model.contact.damping * std::sqrt(effective * stiffness) * 0.25;
+  const double impulse = static_cast<double>(loads.on_second.contact.linear[1]) * velocity_quantum;
+  EXPECT_NEAR(impulse, force * hand_dt, 1e-12);
+}
+
+TEST(Overlap, the_deepest_is_kept_whichever_comes_first) {
+  const Overlap shallow{0.1, 1, 2.0}, deep{0.2, 5, 6.0}, same{0.2, 5, 3.0}, face{0.2, 5, Overlap::of_face(1)};
+  for (const auto& all : {std::vector{shallow, deep, same, face}, {face, same, deep, shallow}, {deep, face, shallow}}) {
+    Overlap kept;
+    for (const Overlap& overlap : all) kept.add(overlap);
+    EXPECT_EQ(kept.depth, 0.2);
+    EXPECT_EQ(Overlap::face_of(kept.partner), 1u);
+  }
+}
+
+TEST(Overlap, is_noted_with_step_and_solids_once_it_passes_a_bound) {
+  const Model<2> model = hand_model<2>();
+  FirstOverlaps first;
+  const auto meet = [&](double distance, std::uint64_t step) {
+    const Both<2> loads =
+        touch(model, hand_solid(model, 7, 0, {{2.0, 4.0}}, {}), hand_solid(model, 3, 0, {{2.0 + distance, 4.0}}, {}));
+    note_overlaps(model, step, std::vector{loads.on_first, loads.on_second}, first);
+  };
+  meet(1.90625, 10);  // overlap 3/32 of the radius 1
+  EXPECT_TRUE(first.doubtful.text.empty());
+  meet(1.75, 11);
+  EXPECT_EQ(first.doubtful.step, 11.0);
+  EXPECT_EQ(first.doubtful.text.find("step 11: solids 3 and 7 overlap by 0.25 of the smaller contact radius, more than "
+                                     "0.1: "),
+            0u)
+      << first.doubtful.text;
+  EXPECT_NE(first.doubtful.text.find("raise contact.stiffness"), std::string::npos);
+  meet(1.625, 12);
+  EXPECT_EQ(first.doubtful.step, 11.0);
+  EXPECT_TRUE(first.last.text.empty());
+  meet(1.4375, 13);
+  EXPECT_EQ(first.last.text.find("step 13: solids 3 and 7 overlap by 0.562 "), 0u) << first.last.text;
+}
+
+TEST(FinishStep, tells_of_contacts_that_would_be_missed) {
+  const Model<2> model = hand_model<2>();
+  Vec<2, Int128> outside{};
+  const auto end_of = [&](double speed) {
+    Solid<2> solid = hand_solid(model, 4, 1, {{4.0, 4.0}}, {{speed, 0.0}});
+    return finish_step(model, 6, solid, SolidLoad<2>{}, outside);
+  };
+  EXPECT_EQ(end_of(7.0), "");  // 7/32 rcut of a ball of 1/2
+  Model<2> small = model;
+  small.shapes[1].balls[1].contact_radius = 0.25;
+  Solid<2> solid = hand_solid(small, 4, 1, {{4.0, 4.0}}, {{7.0, 0.0}});
+  const std::string message = finish_step(small, 6, solid, SolidLoad<2>{}, outside);
+  EXPECT_EQ(message.find("step 6: solid 4: moves 0.875 of its contact radius in one step, more than 0.5: "), 0u)
+      << message;
+}
+
+TEST(Overlap, with_a_wall_names_its_face) {
+  Model<2> model = hand_model<2>();
+  model.faces = {{77, 0, 1.0, 1.0 / model.pair.length[0], 1.0, {}}, {78, 1, 1.0, 1.5 / model.pair.length[1], 1.0, {}}};
+  model.units.length = 2.0;
+  const Solid<2> solid = hand_solid(model, 4, 0, {{4.0, 2.25}}, {});
+  std::vector<SolidLoad<2>> loads(1);
+  add_face_contacts(model, solid_in_step(model, solid), loads[0]);
+  FirstOverlaps first;
+  note_overlaps(model, 5, loads, first);
+  EXPECT_EQ(first.doubtful.text.find("step 5: solid 4 and the wall at y = 3 overlap by 0.25 "), 0u)
+      << first.doubtful.text;
 }
 
 template <int D>

@@ -116,8 +116,8 @@ TEST(SceneModel, KernelSumsAreExactOnTheLattice) {
   EXPECT_EQ(model.self_density, std::nearbyint(model.self_density / density_quantum) * density_quantum);
 }
 
-/// S^2 of one PP of a lattice that moves with v(r), from the constants of the model, (c / rcut)^2, with a = 45. S_0^2 is
-/// the same: velocities differ in proportion to the distance.
+/// S^2 of one PP of a lattice that moves with v(r), from the constants of the model, (c / rcut)^2, with a = 45. S_0^2
+/// is the same: velocities differ in proportion to the distance.
 template <int D, class Velocity>
 double shear_on_lattice(const Model<D>& model, Velocity&& velocity) {
   double sum = 0.0, of_all = 0.0;
@@ -305,6 +305,55 @@ TEST(SceneModel, WarnsOutsideTheMappedRegion) {
   EXPECT_NE(warning({"fluid.rcut=0.25"}).find("fluid.rcut: 2 spacings"), std::string::npos);
   EXPECT_NE(warning({"body.0.radius=0.4"}).find("body.0.radius: 3.2 spacings"), std::string::npos);
   EXPECT_NE(warning({"fluid.background_pressure=1.0"}).find("fluid.background_pressure = 1"), std::string::npos);
+}
+
+/// A composite above a wall, solids alone.
+const std::string dry_composite = R"(
+name = "dry"
+units = "dimensionless"
+[box]
+size = [4.0, 4.0, 4.0]
+[fluid]
+particles = false
+density = 1.0
+spacing = 0.5
+rcut = 1.5
+sound_speed = 100.0
+[[body]]
+shape = "wall"
+position = 0.0
+thickness = 0.5
+[[body]]
+shape = "composite"
+balls = [{centre = [0.0, 0.0, 0.0], radius = 0.5}, {centre = [0.5, 0.0, 0.0], radius = 0.5}]
+density = 2.0
+position = [2.0, 2.0, 2.0]
+velocity = [1.0, 0.0, 0.0]
+[contact]
+model = "linear"
+stiffness = 1000.0
+[run]
+step = 0.001
+steps = 10
+)";
+
+TEST(SceneModel, WithoutFluidSpacingAndSoundSpeedOnlySetUnits) {
+  const double volume = 0.883572933822129;  // of two balls of radius and distance 1/2: 9 pi / 32
+  for (const Overrides& overrides : std::vector<Overrides>{{},
+                                                           {"fluid.spacing=0.001", "fluid.rcut=0.003"},
+                                                           {"fluid.spacing=1e-5"},  // 0.4 million nodes a side
+                                                           {"fluid.spacing=0.0851", "fluid.rcut=0.2553"},  // 47 nodes
+                                                           {"fluid.spacing=0.02", "fluid.rcut=1.5"},
+                                                           {"fluid.spacing=0.5", "fluid.rcut=0.3"},
+                                                           {"fluid.sound_speed=0.5"}}) {
+    const Scene scene = read(dry_composite, overrides);
+    const Model<3> model = make_model<3>(scene).model;
+    const std::string& what = overrides.empty() ? "as it is" : overrides[0];
+    EXPECT_NEAR(model.shapes[1].mass * model.units.mass, 2.0 * volume, 1e-8) << what;
+    EXPECT_NEAR(model.dt * model.units.time(), 0.001, 1e-15) << what;
+    EXPECT_EQ(build_state(scene, model, Region<3>::whole_box()).solids.size(), 1u) << what;
+    EXPECT_EQ(model.faces.size(), 2u) << what;
+  }
 }
 
 TEST(SceneModel, ASceneWithoutParticlesHasNoFrozenOnesEither) {

@@ -216,6 +216,31 @@ std::string with_line(std::string text, const std::string& start, const std::str
   return text.replace(at, end - at, line.empty() ? "" : "\n" + line);
 }
 
+TEST(SceneReader, TwoDeclarationsOfOneSceneHaveOneIdentity) {
+  const std::string identity = read(one_disc).identity;
+  EXPECT_NE(identity.find("fluid.density = 3\n"), std::string::npos) << identity;
+  EXPECT_NE(identity.find("body.0.velocity = [0.3, -0.4]\n"), std::string::npos) << identity;
+  for (const Overrides& same : std::vector<Overrides>{{"fluid.density=3"},
+                                                      {"fluid.spacing=1.25e-1"},
+                                                      {"fluid.kernel=wendland-c2"},
+                                                      {"fluid.shift_rate=0.3", "run.relax=0"},
+                                                      {"body.0.motion=free", "body.0.rotates=true"},
+                                                      {"force.solid=[0, 0]"},
+                                                      {"run.steps=20"},
+                                                      {"run.duration=0.5"},
+                                                      {"output.sample=7", "output.solids=true"}})
+    EXPECT_EQ(read(one_disc, same).identity, identity) << same[0];
+  for (const Overrides& other : std::vector<Overrides>{{"fluid.density=3.0000000000000004"},
+                                                       {"fluid.kernel=lucy"},
+                                                       {"body.0.position=[1.0, 1.5]"},
+                                                       {"run.relax=1"},
+                                                       {"run.step=0.001"},
+                                                       {"units=SI"}})
+    EXPECT_NE(read(one_disc, other).identity, identity) << other[0];
+  const std::string si = read(one_disc, {"units=SI"}).identity;
+  EXPECT_EQ(read(one_disc, {"units=SI", "fluid.viscosity=\"600 mPa s\""}).identity, si);
+}
+
 TEST(SceneReader, NamesMissingKeysAndExplainsMisspeltOnes) {
   expect_input_error([] { read(with_line(one_disc, "viscosity", "")); }, {"scene.toml:6", "fluid.viscosity: missing"});
   expect_input_error([] { read(with_line(one_disc, "viscosity", "viscosty = 0.6")); },

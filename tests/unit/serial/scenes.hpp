@@ -83,7 +83,7 @@ inline std::string discs_alone() {
   std::string text = replaced(dense_discs(), "viscosity = 0.5", "particles = false");
   text = replaced(text, "velocity = [0.02, -0.01]", "");
   text = replaced(text, "fluid = [0.0, 0.0005]\nsolid = \"balance\"", "");
-  return replaced(text, "steps = 100", "steps = 100\nstep = 0.125");
+  return replaced(text, "steps = 100", "steps = 100\nstep = 0.0625");
 }
 
 /// Three large discs among small ones of a tenth of their size, which have a single FP. Domains must be 4.25 wide.
