@@ -231,8 +231,9 @@ void FluidPass<D, Numbers>::sum_forces_of(Part part, const CellGrid<D>& grid) {
 template <int D, class Numbers>
 std::optional<std::uint32_t> FluidPass<D, Numbers>::close_densities(std::span<const std::uint32_t> others,
                                                                     std::span<double> density) {
+  const auto blocks = static_cast<std::uint32_t>(blocks_.size());
 #pragma omp parallel for num_threads(threads_) schedule(static) if (threads_ > 1)
-  for (std::uint32_t block = 0; block < blocks_.size(); ++block) {
+  for (std::uint32_t block = 0; block < blocks; ++block) {
     const auto [first, count] = blocks_.held(block);
     std::uint32_t lane = 0;
     for (; lane + lane_count <= count; lane += lane_count)
@@ -258,8 +259,9 @@ void FluidPass<D, Numbers>::take_densities(std::span<const double> density) {
 template <int D, class Numbers>
 template <bool foreign_alone>
 void FluidPass<D, Numbers>::set_densities(std::span<const double> density) {
+  const auto blocks = static_cast<std::uint32_t>(blocks_.size());
 #pragma omp parallel for num_threads(threads_) schedule(static) if (threads_ > 1 && !foreign_alone)
-  for (std::uint32_t block = 0; block < blocks_.size(); ++block) {
+  for (std::uint32_t block = 0; block < blocks; ++block) {
     if (foreign_alone && foreign_[block] == 0) continue;
     const auto [first, count] = blocks_.held(block);
     std::uint32_t lane = 0;
