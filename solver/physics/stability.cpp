@@ -144,42 +144,53 @@ bool is_stable(const LatticeWave& wave, double step, double viscosity, double sh
 
 namespace {
 
-/// Rows of a square lattice on both sides of the surface.
+/// PPs on the nodes of a square lattice on the near sides of the walls, FPs half a spacing further on the far sides. Of
+/// an FP beyond several walls the largest factor counts.
 template <class Kernel, int D>
-double wall_friction_of(double reach, double largest_no_slip) {
+double wall_friction_of(double reach, double largest_no_slip, int walls) {
   const int most = static_cast<int>(reach) + 1;
-  const auto row = [&](double height) {
-    double sum = 0.0;
-    for (int j = D == 3 ? -most : 0; j <= (D == 3 ? most : 0); ++j)
-      for (int i = -most; i <= most; ++i) {
-        const double square = height * height + i * i + j * j;
-        if (square > 0.0 && square < reach * reach) sum += Kernel::gradient(std::sqrt(square) / reach);
-      }
-    return sum;
+  struct Row {
+    double place, no_slip;  // no_slip: 0 for a PP
   };
-  double all = row(0.0), fluid = all, wall = 0.0;
-  for (int k = 1; k <= most; ++k) {
-    all += 2.0 * row(k);
-    fluid += row(k);
-  }
-  for (int k = 0; k <= most; ++k) {
+  std::vector<Row> both_sides, at_wall;
+  for (int k = -most; k <= most; ++k) {
+    both_sides.push_back({static_cast<double>(k), 0.0});
+    if (k >= 0) at_wall.push_back({static_cast<double>(k), 0.0});
     const Vec<1, double> above{{k + 0.5}}, normal{{1.0}};
-    wall += no_slip_factor(above, normal, k + 0.5, 0.25, largest_no_slip) * row(above[0]);
+    if (k >= 0) at_wall.push_back({-above[0], no_slip_factor(above, normal, above[0], 0.25, largest_no_slip)});
   }
-  return std::max(1.0, (2.0 * fluid + wall) / (2.0 * all));
+  const auto sum = [&](const std::vector<Row>& x, const std::vector<Row>& y, const std::vector<Row>& z) {
+    double friction = 0.0;
+    for (const Row& i : x)
+      for (const Row& j : y)
+        for (const Row& k : z) {
+          const double square = i.place * i.place + j.place * j.place + k.place * k.place;
+          if (square == 0.0 || square >= reach * reach) continue;
+          const double no_slip = std::max({i.no_slip, j.no_slip, k.no_slip});
+          friction += (no_slip > 0.0 ? no_slip : 2.0) * Kernel::gradient(std::sqrt(square) / reach);
+        }
+    return friction;
+  };
+  const std::vector<Row> one{{0.0, 0.0}};
+  const auto rows = [&](int axis) -> const std::vector<Row>& {
+    if (axis >= D) return one;
+    return axis < walls ? at_wall : both_sides;
+  };
+  const double in_fluid = sum(both_sides, both_sides, D == 3 ? both_sides : one);
+  return std::max(1.0, sum(rows(0), rows(1), rows(2)) / in_fluid);
 }
 
 }  // namespace
 
 template <int D>
-double wall_friction(KernelKind kernel, double reach, double largest_no_slip) {
+double wall_friction(KernelKind kernel, double reach, double largest_no_slip, int walls) {
   switch (kernel) {
     case KernelKind::wendland_c2:
-      return wall_friction_of<WendlandC2, D>(reach, largest_no_slip);
+      return wall_friction_of<WendlandC2, D>(reach, largest_no_slip, walls);
     case KernelKind::lucy:
-      return wall_friction_of<Lucy, D>(reach, largest_no_slip);
+      return wall_friction_of<Lucy, D>(reach, largest_no_slip, walls);
     case KernelKind::mps:
-      return wall_friction_of<MpsWeight, D>(reach, largest_no_slip);
+      return wall_friction_of<MpsWeight, D>(reach, largest_no_slip, walls);
   }
   return 1.0;
 }
@@ -202,8 +213,8 @@ double first_instability(KernelKind kernel, double reach, double viscosity, doub
 
 template std::vector<LatticeWave> lattice_waves<2>(KernelKind, double);
 template std::vector<LatticeWave> lattice_waves<3>(KernelKind, double);
-template double wall_friction<2>(KernelKind, double, double);
-template double wall_friction<3>(KernelKind, double, double);
+template double wall_friction<2>(KernelKind, double, double, int);
+template double wall_friction<3>(KernelKind, double, double, int);
 template double first_instability<2>(KernelKind, double, double, double);
 template double first_instability<3>(KernelKind, double, double, double);
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -181,6 +182,14 @@ StepLimit light_limit(const Scene& scene, const Model<D>& model, double viscosit
   return {shortest.of, shortest.usual * time, shortest.doubtful * time, shortest.last * time};
 }
 
+/// How many walls a PP may touch at once: one, also of balls, or more where walls lie across several axes.
+int meeting_walls(const Scene& scene) {
+  std::array<bool, 3> across{};
+  for (const BodyScene& body : scene.bodies)
+    if (is_wall(body)) across[static_cast<std::size_t>(body.axis)] = true;
+  return std::max(1, static_cast<int>(std::ranges::count(across, true)));
+}
+
 /// Limits in scene units. A contact lasts at least as long as that of two of the lightest solids; under Hertz' law at
 /// the largest speed that the scene declares, or at a tenth of the sound speed if it declares none.
 template <int D>
@@ -200,7 +209,9 @@ StepLimits find_limits(const Scene& scene, const Model<D>& model, const Matter& 
   limits.contact = contact_limit(duration);
   if (!model.terms.fluid) return limits;
   const double reach = 1.0 / model.spacing, shift_rate = model.terms.transport ? scene.fluid.shift_rate : 0.0;
-  const double at_walls = model.terms.solids ? wall_friction<D>(model.kernel, reach, scene.fluid.largest_no_slip) : 1.0;
+  const double at_walls = model.terms.solids
+                              ? wall_friction<D>(model.kernel, reach, scene.fluid.largest_no_slip, meeting_walls(scene))
+                              : 1.0;
   const double viscosity = scene.fluid.viscosity / scene.fluid.density / (model.units.velocity * h);
   limits.waves =
       wave_limit(h, model.units.velocity, first_instability<D>(model.kernel, reach, at_walls * viscosity, shift_rate),
@@ -209,8 +220,8 @@ StepLimits find_limits(const Scene& scene, const Model<D>& model, const Matter& 
   return limits;
 }
 
-/// a, as the scene gives it. By default it is 5000 nu / (c h), for what the shift stirs up at a wall is damped by viscosity,
-/// but at most 160. With more a column of fluid does not come to rest.
+/// a, as the scene gives it. By default it is 5000 nu / (c h), for what the shift stirs up at a wall is damped by
+/// viscosity, but at most 160. With more a column of fluid does not come to rest.
 template <int D>
 double shift_shear(const Scene& scene, const Model<D>& model) {
   if (scene.fluid.shift_shear) return *scene.fluid.shift_shear;

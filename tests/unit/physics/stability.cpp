@@ -114,13 +114,13 @@ TEST(WallFriction, is_that_of_the_fluid_where_the_factor_is_one_and_grows_with_i
       // An FP does not move, so it counts half of a PP that moves the other way. The nearest row of the wall is 0.5 dx
       // away, where the weight of MPS has grown a lot.
       if (kernel != KernelKind::mps) {
-        EXPECT_LT(wall_friction<2>(kernel, reach, 1.0), 1.06);
-        EXPECT_LT(wall_friction<3>(kernel, reach, 1.0), 1.06);
+        EXPECT_LT(wall_friction<2>(kernel, reach, 1.0, 1), 1.06);
+        EXPECT_LT(wall_friction<3>(kernel, reach, 1.0, 1), 1.06);
       }
       double plane = 1.0, space = 1.0;
       for (const double largest : {1.0, 2.0, 4.0, 8.0}) {
-        const double in_plane = wall_friction<2>(kernel, reach, largest);
-        const double in_space = wall_friction<3>(kernel, reach, largest);
+        const double in_plane = wall_friction<2>(kernel, reach, largest, 1);
+        const double in_space = wall_friction<3>(kernel, reach, largest, 1);
         EXPECT_GE(in_plane, plane);
         EXPECT_GE(in_space, space);
         plane = in_plane;
@@ -129,6 +129,23 @@ TEST(WallFriction, is_that_of_the_fluid_where_the_factor_is_one_and_grows_with_i
       EXPECT_GT(plane, 1.2);
       EXPECT_GT(space, 1.2);
     }
+}
+
+TEST(WallFriction, in_a_corner_is_that_of_a_sum_by_hand) {
+  // rcut 1.2 dx: of the lattice four neighbours at 1, PPs, which count twice. In the corner two of them are left, and
+  // FPs at (-0.5, 0), (0, -0.5), (-0.5, 1), (1, -0.5), all at 0.25 dx of the PP, so beta = 1 + 0.5 / 0.25; and one at
+  // (-0.5, -0.5).
+  const auto weight = [](double distance) { return WendlandC2::gradient(distance / 1.2); };
+  const double fluid = 8.0 * weight(1.0);
+  const double corner =
+      4.0 * weight(1.0) + 3.0 * (2.0 * weight(0.5) + 2.0 * weight(std::sqrt(1.25)) + weight(std::sqrt(0.5)));
+  EXPECT_NEAR((wall_friction<2>(KernelKind::wendland_c2, 1.2, 4.0, 2)), corner / fluid, 1e-12);
+  for (const double reach : {2.6, 3.0, 3.5}) {
+    const KernelKind kernel = KernelKind::wendland_c2;
+    EXPECT_GT(wall_friction<2>(kernel, reach, 4.0, 2), 1.4 * wall_friction<2>(kernel, reach, 4.0, 1));
+    EXPECT_GT(wall_friction<3>(kernel, reach, 8.0, 2), 1.2 * wall_friction<3>(kernel, reach, 8.0, 1));
+    EXPECT_GT(wall_friction<3>(kernel, reach, 8.0, 3), 1.1 * wall_friction<3>(kernel, reach, 8.0, 2));
+  }
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ TEST(SceneModel, UnitsAndBox) {
 }
 
 /// c dt / h, by default h / c or 0.8 of the first instability, with the friction that a wall adds.
-double wave_step(double viscosity, double largest_no_slip, double shift_rate) {
-  const double at_walls = wall_friction<2>(KernelKind::wendland_c2, 4.0, largest_no_slip);
+double wave_step(double viscosity, double largest_no_slip, double shift_rate, int walls = 1) {
+  const double at_walls = wall_friction<2>(KernelKind::wendland_c2, 4.0, largest_no_slip, walls);
   return std::min(1.0, 0.8 * first_instability<2>(KernelKind::wendland_c2, 4.0, at_walls * viscosity, shift_rate));
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "particles/frozen.hpp"
+#include "physics/stability.hpp"
 #include "scene/lattice.hpp"
 #include "unit/scene/scene_setup.hpp"
 
@@ -64,6 +65,19 @@ std::vector<FrozenInStep<2>> frozen_of(const Model<2>& model, const State<2>& st
   for (std::uint32_t k = 0; k < state.solids.size(); ++k)
     place_frozen(model, solid_in_step(model, state.solids[k]), k, everywhere, frozen);
   return frozen;
+}
+
+TEST(SceneWalls, ACornerShortensTheStep) {
+  // nu / (c h) = 0.02 / 0.0625 = 0.32, rcut 3 dx. Without the side no PP feels two walls.
+  const KernelKind kernel = KernelKind::wendland_c2;
+  const double reach = 0.125 / 0.0416666667;
+  const auto step = [&](int walls) {
+    return 0.8 * 0.0625 * first_instability<2>(kernel, reach, wall_friction<2>(kernel, reach, 4.0, walls) * 0.32, 0.3);
+  };
+  const std::string flat = cavity.substr(0, cavity.rfind("[[body]]")) + "[run]\nsteps = 10\n";
+  EXPECT_NEAR(make_model<2>(read(cavity)).limits.waves.usual, step(2), 1e-12);
+  EXPECT_NEAR(make_model<2>(read(flat)).limits.waves.usual, step(1), 1e-12);
+  EXPECT_LT(step(2), 0.8 * step(1));
 }
 
 TEST(SceneWalls, TheFrozenParticlesFillTheWallsOnceAndHaveTheDensityOfTheFluid) {
