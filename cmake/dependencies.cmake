@@ -14,12 +14,5 @@ add_library(mappm_toml INTERFACE)
 target_include_directories(mappm_toml SYSTEM INTERFACE ${TOMLPLUSPLUS_INCLUDE_DIR})
 target_compile_definitions(mappm_toml INTERFACE TOML_HEADER_ONLY=1)
 
-# HDF5 is there twice: serial for the reference, which links no MPI, and over MPI for the parallel solver.
-foreach(flavour serial openmpi)
-  find_path(HDF5_${flavour}_INCLUDE_DIR hdf5.h PATHS /usr/include/hdf5/${flavour} NO_DEFAULT_PATH REQUIRED)
-  find_library(HDF5_${flavour}_LIBRARY hdf5_${flavour} REQUIRED)
-  add_library(mappm_hdf5_${flavour} INTERFACE)
-  target_include_directories(mappm_hdf5_${flavour} SYSTEM INTERFACE ${HDF5_${flavour}_INCLUDE_DIR})
-  target_link_libraries(mappm_hdf5_${flavour} INTERFACE ${HDF5_${flavour}_LIBRARY})
-endforeach()
-target_link_libraries(mappm_hdf5_openmpi INTERFACE MPI::MPI_CXX)
+# Serial for the reference, which links no MPI, and over MPI for the parallel solver.
+find_package(HDF5Debian REQUIRED COMPONENTS serial openmpi)

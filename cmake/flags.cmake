@@ -1,26 +1,36 @@
-# Flags that every target shares, carried by the interface target mappm_flags.
+# Flags that every target shares. The interface target mappm_flags carries those that whoever includes a header of the
+# solver needs too, and is installed with it; mappm_build_flags those of this build alone.
 add_library(mappm_flags INTERFACE)
+add_library(mappm_build_flags INTERFACE)
 
 # Results must have the same bits from every compiler and instruction set: no contraction to fma. No code reads errno,
-# so sqrt may be one instruction.
+# so sqrt may be one instruction. The laws are templates and inline functions, which a program that includes them
+# compiles anew; of two copies the linker keeps one. So a program outside gets both flags from the installed targets.
+target_compile_features(mappm_flags INTERFACE cxx_std_20)
 target_compile_options(mappm_flags INTERFACE -ffp-contract=off -fno-math-errno)
 
-target_compile_options(mappm_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+# It gets the instruction set too. Bits do not depend on that, but the width of lanes does, and with it the layout of
+# types of the parallel engine.
+string(TOUPPER "CMAKE_CXX_FLAGS_${CMAKE_BUILD_TYPE}" flags_of_type)
+string(REGEX MATCHALL "-m[^ ]+" architecture "${CMAKE_CXX_FLAGS} ${${flags_of_type}}")
+target_compile_options(mappm_flags INTERFACE "$<INSTALL_INTERFACE:${architecture}>")
+
+target_compile_options(mappm_build_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wdouble-promotion -Wformat=2)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 starts the AVX-512 intrinsics behind <experimental/simd> from a deliberately undefined register
   # (avx512fintrin.h, `__m512d __Y = __Y`) and then reports it at every use: a false alarm, fixed in GCC 13. Clang
   # still watches for uninitialised variables.
-  target_compile_options(mappm_flags INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized)
+  target_compile_options(mappm_build_flags INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized)
 endif()
 if(MAPPM_WERROR)
-  target_compile_options(mappm_flags INTERFACE -Werror)
+  target_compile_options(mappm_build_flags INTERFACE -Werror)
 endif()
 
 if(MAPPM_ASSERTIONS)
-  target_compile_options(mappm_flags INTERFACE -UNDEBUG)
+  target_compile_options(mappm_build_flags INTERFACE -UNDEBUG)
 else()
-  target_compile_definitions(mappm_flags INTERFACE NDEBUG)
+  target_compile_definitions(mappm_build_flags INTERFACE NDEBUG)
 endif()
 
 if(MAPPM_SANITIZE)

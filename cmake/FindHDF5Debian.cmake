@@ -1,0 +1,25 @@
+# HDF5 as Debian installs it, twice side by side: components `serial` and `openmpi` (over MPI, which is found before).
+# Each that is found is a target mappm_hdf5_COMPONENT. The installed package looks for HDF5 with this file too.
+foreach(flavour IN LISTS HDF5Debian_FIND_COMPONENTS)
+  find_path(HDF5_${flavour}_INCLUDE_DIR hdf5.h PATHS /usr/include/hdf5/${flavour} NO_DEFAULT_PATH)
+  find_library(HDF5_${flavour}_LIBRARY hdf5_${flavour})
+  mark_as_advanced(HDF5_${flavour}_INCLUDE_DIR HDF5_${flavour}_LIBRARY)
+  if(HDF5_${flavour}_INCLUDE_DIR AND HDF5_${flavour}_LIBRARY)
+    set(HDF5Debian_${flavour}_FOUND TRUE)
+    list(APPEND HDF5Debian_LIBRARIES ${HDF5_${flavour}_LIBRARY})
+  endif()
+endforeach()
+
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(HDF5Debian REQUIRED_VARS HDF5Debian_LIBRARIES HANDLE_COMPONENTS)
+
+foreach(flavour IN LISTS HDF5Debian_FIND_COMPONENTS)
+  if(HDF5Debian_${flavour}_FOUND AND NOT TARGET mappm_hdf5_${flavour})
+    add_library(mappm_hdf5_${flavour} INTERFACE IMPORTED)
+    target_include_directories(mappm_hdf5_${flavour} SYSTEM INTERFACE ${HDF5_${flavour}_INCLUDE_DIR})
+    target_link_libraries(mappm_hdf5_${flavour} INTERFACE ${HDF5_${flavour}_LIBRARY})
+    if(flavour STREQUAL "openmpi")
+      target_link_libraries(mappm_hdf5_openmpi INTERFACE MPI::MPI_CXX)
+    endif()
+  endif()
+endforeach()
