@@ -8,14 +8,14 @@ include(CMakeFindDependencyMacro)
 list(PREPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
 
 find_dependency(fmt)
-find_dependency(HDF5Debian COMPONENTS serial)
+find_dependency(HDF5Flavours COMPONENTS serial)
 include(${CMAKE_CURRENT_LIST_DIR}/MaPPMTargets.cmake)
 
 if("parallel" IN_LIST MaPPM_FIND_COMPONENTS)
   set(MPI_CXX_SKIP_MPICXX TRUE)  # the C interface of MPI is all that is used
   find_dependency(MPI COMPONENTS CXX)
   find_dependency(OpenMP COMPONENTS CXX)
-  find_dependency(HDF5Debian COMPONENTS openmpi)
+  find_dependency(HDF5Flavours COMPONENTS openmpi)
   include(${CMAKE_CURRENT_LIST_DIR}/MaPPMParallelTargets.cmake)
   set(MaPPM_parallel_FOUND TRUE)
 endif()

@@ -27,4 +27,4 @@ install(DIRECTORY ${CMAKE_SOURCE_DIR}/solver/scene DESTINATION ${MAPPM_INSTALL_H
 include(CMakePackageConfigHelpers)
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/MaPPMConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/MaPPMConfigVersion.cmake ${CMAKE_SOURCE_DIR}/cmake/MaPPMConfig.cmake
-  ${CMAKE_SOURCE_DIR}/cmake/FindHDF5Debian.cmake DESTINATION ${package_folder})
+  ${CMAKE_SOURCE_DIR}/cmake/FindHDF5Flavours.cmake DESTINATION ${package_folder})
