@@ -16,7 +16,7 @@
 #include "counted.hpp"
 #include "parallel/fluid_pass.hpp"
 #include "sorted_fluid.hpp"
-#include "stopwatch.hpp"
+#include "timing.hpp"
 
 namespace mappm {
 using bench::Counted, bench::Operations, bench::SortedFluid;

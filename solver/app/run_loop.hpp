@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -17,6 +16,7 @@
 #include "app/poll.hpp"
 #include "app/signals.hpp"
 #include "app/start.hpp"
+#include "base/stopwatch.hpp"
 #include "output/checkpoint_folder.hpp"
 #include "output/durable_file.hpp"
 #include "output/face_series.hpp"
@@ -48,21 +48,6 @@ struct RunSetup {
   std::vector<int> domains = {};     // an entry an axis; empty for the reference
   int threads = 1;
   bool faces = false;  // write faces.csv; for engines that keep a ledger of faces
-};
-
-/// Wall time in seconds, added up over several stretches.
-class StopWatch {
- public:
-  template <class Work>
-  auto time(Work&& work) {
-    const auto begin = std::chrono::steady_clock::now();
-    work();
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  }
-  double seconds() const { return seconds_; }
-
- private:
-  double seconds_ = 0.0;
 };
 
 template <int D, class E>
@@ -141,7 +126,7 @@ class RunLoop {
   std::optional<FaceSeries<D>> face_series_;
   std::optional<Progress> progress_;
   RunRecord record_;
-  StopWatch stepping_, output_;
+  double stepping_seconds_ = 0.0, output_seconds_ = 0.0;
   std::filesystem::path saved_;  // the last checkpoint of this run
   std::uint64_t saved_step_ = 0;
   bool too_fast_ = false;  // and warned about it
@@ -201,9 +186,9 @@ bool RunLoop<D, E>::advance() {
     poll_.note(engine_.overlaps());
     if (!poll_.due(step()) && !outputs_due()) continue;
     const double steps_done = static_cast<double>(step() - first_step_);
-    const bool stop = poll_.agree_to_stop(step(), stepping_.seconds() / steps_done, engine_.first_fault());
+    const bool stop = poll_.agree_to_stop(step(), stepping_seconds_ / steps_done, engine_.first_fault());
     write_outputs();
-    progress_->update(step(), stepping_.seconds() + output_.seconds());
+    progress_->update(step(), stepping_seconds_ + output_seconds_);
     if (stop && step() < last_step_) {
       if (saved_step_ != step()) save();
       return false;
@@ -218,7 +203,7 @@ void RunLoop<D, E>::make_step() {
   const auto& trace = setup_.options.trace;
   const bool traced = trace.has_value() && trace->step == step();
   if (traced) engine_.trace_next_step(trace->particle);
-  stepping_.time([&] { engine_.step(); });
+  stepping_seconds_ += seconds_of([&] { engine_.step(); });
   if (traced) write_trace(folder_, engine_.last_trace(), setup_.model.terms.transport, trace->particle, setup_.group);
 }
 
@@ -256,7 +241,7 @@ template <int D, class E>
 requires Engine<E, D>
 void RunLoop<D, E>::write_outputs() {
   const OutputScene& output = setup_.scene.output;
-  output_.time([&] {
+  output_seconds_ += seconds_of([&] {
     const bool snapshot_due = falls_on(output.snapshot) || step() == last_step_;
     if (!snapshot_due && !falls_on(output.sample)) return;
     const Sample<D> now = engine_.sample();
@@ -306,13 +291,13 @@ void RunLoop<D, E>::check_mach(const Totals<D>& totals, const FluidParticles<D>&
   if (fastest.mach <= largest_local_mach) return;
   too_fast_ = true;
   const Model<D>& model = setup_.model;
-  std::vector<double> place;
+  std::vector<double> position;
   for (int axis = 0; axis < D; ++axis)
-    place.push_back(fastest.position[axis] * model.pair.length[axis] * model.units.length);
+    position.push_back(fastest.position[axis] * model.pair.length[axis] * model.units.length);
   warn(fmt::format(
       "step {}: local Mach number {:.3g} at ({:.6g}), beyond {}: the fluid is compressed there and may tear; a "
       "sound speed of {:.3g} would keep it at a tenth",
-      step(), fastest.mach, fmt::join(place, ", "), largest_local_mach, 10.0 * fastest.mach * model.units.velocity));
+      step(), fastest.mach, fmt::join(position, ", "), largest_local_mach, 10.0 * fastest.mach * model.units.velocity));
 }
 
 template <int D, class E>
@@ -325,7 +310,7 @@ void RunLoop<D, E>::warn(const std::string& text) {
 template <int D, class E>
 requires Engine<E, D>
 void RunLoop<D, E>::save() {
-  output_.time([&] {
+  output_seconds_ += seconds_of([&] {
     saved_ = save_checkpoint(folder_ / checkpoint_folder_name, setup_.scene.identity, engine_.state(), sampled_step_,
                              setup_.group);
   });
@@ -354,8 +339,8 @@ template <int D, class E>
 requires Engine<E, D>
 void RunLoop<D, E>::write_record(const std::string& state, const std::string& message) {
   PhaseSeconds phases = engine_.phase_seconds();
-  phases.emplace_back("output", output_.seconds());
-  phases.emplace_back("steps", stepping_.seconds());
+  phases.emplace_back("output", output_seconds_);
+  phases.emplace_back("steps", stepping_seconds_);
   std::vector<double> seconds;
   for (const auto& phase : phases) seconds.push_back(phase.second);
   setup_.group.maximum(seconds);

@@ -96,56 +96,56 @@ Traffic ParallelEngine<D>::traffic() const {
 template <int D>
 void ParallelEngine<D>::step() {
   if (options_.rebalance > 0 && state_.step > 0 && state_.step % options_.rebalance == 0) rebalance();
-  watch_.start();
+  times_.start();
   if (traced_particle_.has_value() || faces_due()) state();  // what explains the pairs wants them in their cells
   sum_densities(false);
   if (model_.terms.fluid) sum_forces();
   explain_pairs();
   if (model_.terms.solids) {
     std::vector<HomeReport<D>> reports = collect_reports();
-    watch_.end(Phase::solids);
+    times_.end(Phase::solids);
     reports = halo_->send_home(copies_, std::move(reports));
-    watch_.end(Phase::copies);
+    times_.end(Phase::copies);
     move_solids(reports);
-    watch_.end(Phase::solids);
+    times_.end(Phase::solids);
   }
   move_fluid();
   ++state_.step;
-  watch_.end(Phase::integrate);
+  times_.end(Phase::integrate);
 }
 
 /// Copies from the neighbours, and the densities of what lies in the region. `alone`: in no step, for output.
 template <int D>
 void ParallelEngine<D>::sum_densities(bool alone) {
-  halo_->begin_exchange(state_, *residents_, watch_);
+  halo_->begin_exchange(state_, *residents_, times_);
   if (residents_->staying()) {  // what needs no message, while they are on their way
     std::visit([&](auto& pass) { pass.sum_inner_densities(grid_); }, pass_);
-    watch_.end(Phase::densities);
+    times_.end(Phase::densities);
   }
-  const bool stay = halo_->end_exchange(state_, *residents_, copies_, watch_);
+  const bool stay = halo_->end_exchange(state_, *residents_, copies_, times_);
   const bool single_step = alone || (!stay && !residents_->pays());
   place_solids();
-  watch_.end(Phase::solids);
+  times_.end(Phase::solids);
   if (!model_.terms.fluid) return;
   if (!stay) order_fluid(single_step);
   std::visit(
       [&](auto& pass) {
         if (!stay) {
-          pass.list(state_.fluid, grid_, residents_->may_own(), single_step ? 1.0 : 1.0 + skin, residents_->foreign(),
-                    halo_->traffic().neighbours > 0);
-          watch_.end(Phase::lists);
+          pass.list(state_.fluid, grid_, residents_->may_come_to_own(), single_step ? 1.0 : 1.0 + skin,
+                    residents_->foreign(), halo_->traffic().neighbours > 0);
+          times_.end(Phase::lists);
           pass.sum_inner_densities(grid_);
         }
         pass.sum_rest_densities(state_.fluid, grid_);
-        watch_.end(Phase::densities);
+        times_.end(Phase::densities);
         pass.add_frozen_densities(grid_, solids_.frozen, frozen_density_sums_);
-        watch_.end(Phase::frozen_pairs);
+        times_.end(Phase::frozen_pairs);
       },
       pass_);
   if (model_.terms.solids) densities_.add(solids_, *levels_, frozen_density_sums_);
-  watch_.end(Phase::solids);
+  times_.end(Phase::solids);
   close_densities();
-  watch_.end(Phase::densities);
+  times_.end(Phase::densities);
 }
 
 template <int D>
@@ -154,7 +154,7 @@ void ParallelEngine<D>::order_fluid(bool single_step) {
   find_rows();
   residents_->settle(state_.fluid, single_step);
   ++orderings_;
-  watch_.end(Phase::sort);
+  times_.end(Phase::sort);
 }
 
 /// Those in the region are known now.
@@ -164,13 +164,13 @@ void ParallelEngine<D>::close_densities() {
   const std::vector<std::uint32_t> others = residents_->others();
   const auto wrong = std::visit([&](auto& pass) { return pass.close_densities(others, density_); }, pass_);
   for (std::size_t i = wrong.value_or(density_.size()); i < density_.size(); ++i)
-    note_density(model_, {state_.step, FaultPlace::What::fluid_density, state_.fluid.id[i]}, density_[i], fault_);
+    note_density(model_, {state_.step, FaultOrigin::What::fluid_density, state_.fluid.id[i]}, density_[i], fault_);
   for (std::size_t k = 0; k < solids_.frozen.size(); ++k) {
     FrozenInStep<D>& fp = solids_.frozen[k];
     if (!halo_->region().contains(fp.place.x)) continue;
     set_density(model_, fp, summed_density(frozen_density_sums_[k], fp.own_density));
     const std::uint64_t solid = solids_.bodies[fp.solid].solid->id;
-    note_density(model_, {state_.step, FaultPlace::What::frozen_density, solid, fp.index}, fp.density, fault_);
+    note_density(model_, {state_.step, FaultOrigin::What::frozen_density, solid, fp.index}, fp.density, fault_);
   }
 }
 
@@ -178,18 +178,18 @@ void ParallelEngine<D>::close_densities() {
 template <int D>
 void ParallelEngine<D>::sum_forces() {
   halo_->begin_densities(state_.fluid, *residents_, density_, solids_);
-  watch_.end(Phase::exchange);
+  times_.end(Phase::exchange);
   std::visit([&](auto& pass) { pass.sum_inner(grid_); }, pass_);
-  watch_.end(Phase::pairs);
+  times_.end(Phase::pairs);
   halo_->end_densities(state_.fluid, *residents_, density_, solids_);
-  watch_.end(Phase::exchange);
+  times_.end(Phase::exchange);
   std::visit(
       [&](auto& pass) {
         pass.take_densities(density_);
         pass.sum_rest(grid_);
-        watch_.end(Phase::pairs);
+        times_.end(Phase::pairs);
         pass.add_frozen(grid_, solids_.frozen, frozen_sums_);
-        watch_.end(Phase::frozen_pairs);
+        times_.end(Phase::frozen_pairs);
       },
       pass_);
 }
@@ -197,7 +197,7 @@ void ParallelEngine<D>::sum_forces() {
 /// As the next step will see them.
 template <int D>
 Sample<D> ParallelEngine<D>::sample() {
-  const Stopwatch watch = watch_;
+  const PhaseTimes times = times_;
   state();
   sum_densities(true);
   DensityField<D> field;
@@ -205,7 +205,7 @@ Sample<D> ParallelEngine<D>::sample() {
     if (halo_->region().contains(state_.fluid.position(i))) field.fluid.push_back(density_[i]);
   for (const FrozenInStep<D>& fp : solids_.frozen)
     if (halo_->region().contains(fp.place.x)) field.frozen.push_back(point_of(fp, *solids_.bodies[fp.solid].solid));
-  watch_ = watch;
+  times_ = times;
   return {state(), std::move(field)};
 }
 
@@ -289,7 +289,7 @@ void ParallelEngine<D>::move_solids(const std::vector<HomeReport<D>>& from_other
   note_overlaps(model_, state_.step, loads_, overlaps_);
   for (std::size_t a = 0; a < state_.solids.size(); ++a) {
     Solid<D>& solid = state_.solids[a];
-    fault_.note({state_.step, FaultPlace::What::solid_motion, solid.id},
+    fault_.note({state_.step, FaultOrigin::What::solid_motion, solid.id},
                 finish_step(model_, state_.step, solid, std::move(loads_[a]), state_.outside_impulse));
   }
 }
@@ -330,7 +330,7 @@ void ParallelEngine<D>::move_fluid() {
 #pragma omp critical
           all.add(motion);
         }
-        for (const std::uint32_t i : residents_->near_outside()) all.move(pass, state_.fluid, i, pass.place(i), 1);
+        for (const std::uint32_t i : residents_->near_outside()) all.move(pass, state_.fluid, i, pass.slot(i), 1);
       },
       pass_);
   residents_->moved(all.farthest());

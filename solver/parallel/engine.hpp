@@ -11,9 +11,9 @@
 #include "parallel/fluid_pass.hpp"
 #include "parallel/frozen_densities.hpp"
 #include "parallel/halo.hpp"
+#include "parallel/phase_times.hpp"
 #include "parallel/placed_solids.hpp"
 #include "parallel/residents.hpp"
-#include "parallel/stopwatch.hpp"
 #include "particles/cell_levels.hpp"
 #include "particles/engine.hpp"
 
@@ -39,7 +39,7 @@ class ParallelEngine {
   Sample<D> sample();
   const FirstFault& first_fault() const { return fault_; }
   const FirstOverlaps& overlaps() const { return overlaps_; }
-  PhaseSeconds phase_seconds() const { return watch_.seconds(); }
+  PhaseSeconds phase_seconds() const { return times_.seconds(); }
   Traffic traffic() const;
   /// Steps so far in which the PPs of this process were put in order anew.
   std::uint64_t orderings() const { return orderings_; }
@@ -105,7 +105,7 @@ class ParallelEngine {
   std::uint64_t orderings_ = 0;
   FirstFault fault_;
   FirstOverlaps overlaps_;
-  Stopwatch watch_;
+  PhaseTimes times_;
   Traffic before_;  // of the domains before the present ones
 };
 

@@ -17,7 +17,7 @@ MAPPM_INLINE PairCentre<D, Numbers> FluidPass<D, Numbers>::centre(const FrozenIn
   using Real = typename Numbers::Real;
   Centre centre;
   for (int axis = 0; axis < D; ++axis) {
-    centre.x[axis] = numbers_.place(axis, fp.place.x[axis]);
+    centre.x[axis] = numbers_.coordinate(axis, fp.place.x[axis]);
     centre.v[axis] = static_cast<Real>(fp.place.v[axis]);
   }
   centre.volume = {static_cast<Real>(fp.volume.v2), static_cast<Real>(fp.volume.pv2)};
@@ -83,10 +83,10 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
   all_rows_ = row_offsets(grid, false);
   for (Search& search : searches_) search.measured = 0;
   foreign_.assign(blocks_.size(), 0);
-  for (const std::uint32_t i : foreign) foreign_[blocks_.place(i) / lanes] = 1;
+  for (const std::uint32_t i : foreign) foreign_[blocks_.slot(i) / lanes] = 1;
   find_boxes(fluid);
-  const std::vector<std::uint8_t> inside = places_in(fluid, region);  // of each place
-  std::vector<std::uint8_t> reaches_inside(blocks_.size());           // of each block
+  const std::vector<std::uint8_t> inside = slots_in(fluid, region);  // of each slot
+  std::vector<std::uint8_t> reaches_inside(blocks_.size());          // of each block
   for (std::size_t block = 0; block < blocks_.size(); ++block)
     reaches_inside[block] = std::ranges::max(std::span(inside).subspan(block * lanes, lanes));
   const std::vector<std::uint8_t> wide = wide_blocks(fluid);
@@ -96,17 +96,17 @@ void FluidPass<D, Numbers>::list(FluidParticles<D>& fluid, const CellGrid<D>& gr
     for (const Part part : {inner, rest}) kept_[parts * band + part].clear();
     for_each_row(grid, first, last, [&](const Vec<D, int>& row) {
       for_each_block_list(
-          fluid, grid, row, reach, search, [&](std::uint32_t place, std::span<const std::uint32_t> near) {
+          fluid, grid, row, reach, search, [&](std::uint32_t slot, std::span<const std::uint32_t> near) {
             const auto is_foreign = [&](std::uint32_t other) { return foreign_[other] != 0; };
-            const bool alone = apart && foreign_[place / lanes] == 0 && std::ranges::none_of(near, is_foreign);
-            const bool all = inside[place] != 0;
-            const auto is_wide = [&](std::uint32_t other) { return wide[other] != 0 || wide[place / lanes] != 0; };
+            const bool alone = apart && foreign_[slot / lanes] == 0 && std::ranges::none_of(near, is_foreign);
+            const bool all = inside[slot] != 0;
+            const auto is_wide = [&](std::uint32_t other) { return wide[other] != 0 || wide[slot / lanes] != 0; };
             kept_[parts * band + (alone ? inner : rest)].add(
-                place, near, [&](std::uint32_t other) { return all || reaches_inside[other] != 0; }, is_wide,
-                [&](std::uint32_t other) { return lanes_near(fluid, place, other); });
+                slot, near, [&](std::uint32_t other) { return all || reaches_inside[other] != 0; }, is_wide,
+                [&](std::uint32_t other) { return lanes_near(fluid, slot, other); });
           });
     });
-    for (const Part part : {inner, rest}) blocks_.expect(kept_[parts * band + part].blocks());
+    for (const Part part : {inner, rest}) blocks_.count_contributions(kept_[parts * band + part].blocks());
   });
 }
 
@@ -126,7 +126,7 @@ void FluidPass<D, Numbers>::find_boxes(const FluidParticles<D>& fluid) {
   }
 }
 
-/// Calls work(place, blocks) for the PPs of this row: the blocks of later places whose boxes come within the reach
+/// Calls work(slot, blocks) for the PPs of this row: the blocks of later slots whose boxes come within the reach
 /// (rcut), in rising order.
 template <int D, class Numbers>
 template <class Work>
@@ -139,8 +139,9 @@ void FluidPass<D, Numbers>::for_each_block_list(const FluidParticles<D>& fluid, 
   if (begin == end) return;
   search.near.fit(grid, blocks_, half_rows_, row, false);
   const double square_of_reach = reach * reach * (1.0 + 1e-6);  // rounding hides no pair
-  for (std::uint32_t own = begin / lanes; own * lanes < end; ++own) {
-    const std::uint32_t first = std::max(begin, own * lanes), last = std::min(end, (own + 1) * lanes);
+  for (std::uint32_t block_of_centres = begin / lanes; block_of_centres * lanes < end; ++block_of_centres) {
+    const std::uint32_t first = std::max(begin, block_of_centres * lanes),
+                        last = std::min(end, (block_of_centres + 1) * lanes);
     Region<D> box;
     for (int axis = 0; axis < D; ++axis) {
       const auto x = fluid.x(axis).begin();
@@ -150,7 +151,7 @@ void FluidPass<D, Numbers>::for_each_block_list(const FluidParticles<D>& fluid, 
     }
     search.near.find(grid, box);
     Candidates<D>& candidates = search.candidates;
-    std::uint32_t count = 0, next = own + 1;  // a block on the border of two rows is found in both
+    std::uint32_t count = 0, next = block_of_centres + 1;  // a block on the border of two rows is found in both
     for (std::size_t n = 0; n < search.near.count(); ++n) {
       const auto range = search.near.range(grid, n);
       const std::uint32_t from = std::max(next, range.first / lanes), to = (range.end + lanes - 1) / lanes;
@@ -168,12 +169,12 @@ void FluidPass<D, Numbers>::for_each_block_list(const FluidParticles<D>& fluid, 
     candidates.end(count);
     search.measured += std::uint64_t{count} * (last - first);
     if (search.found.size() < count + 1 + lane_count) search.found.resize(count + 1 + lane_count);
-    for (std::uint32_t place = first; place < last; ++place) {
+    for (std::uint32_t slot = first; slot < last; ++slot) {
       Vec<D, Lanes> x;
-      for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[place - gap] * model_.pair.length[axis];
+      for (int axis = 0; axis < D; ++axis) x[axis] = fluid.x(axis)[slot - gap] * model_.pair.length[axis];
       std::uint32_t* const found = search.found.data();
       std::uint32_t near = 0;
-      if (place % lanes + 1 < blocks_.held(own).count) found[near++] = own;
+      if (slot % lanes + 1 < blocks_.held(block_of_centres).count) found[near++] = block_of_centres;
       for (std::uint32_t n = 0; n < count; n += lane_count) {
         Lanes square = 0.0;
         for (int axis = 0; axis < D; ++axis) {
@@ -183,16 +184,16 @@ void FluidPass<D, Numbers>::for_each_block_list(const FluidParticles<D>& fluid, 
         }
         near += store_chosen(square < square_of_reach, &candidates.block[n], found + near);
       }
-      work(place, std::span<const std::uint32_t>(found, near));
+      work(slot, std::span<const std::uint32_t>(found, near));
     }
   }
 }
 
-/// The lanes of a block that are PPs near the one at a place, and do not only seem so: one a bit.
+/// The lanes of a block that are PPs near the one at a slot, and do not only seem so: one a bit.
 template <int D, class Numbers>
-std::uint16_t FluidPass<D, Numbers>::lanes_near(const FluidParticles<D>& fluid, std::uint32_t place,
+std::uint16_t FluidPass<D, Numbers>::lanes_near(const FluidParticles<D>& fluid, std::uint32_t slot,
                                                 std::uint32_t block) const {
-  const Vec<D, double> x = fluid.position(blocks_.held(place / lanes).first + place % lanes);
+  const Vec<D, double> x = fluid.position(blocks_.held(slot / lanes).first + slot % lanes);
   const auto& held = blocks_.held(block);
   unsigned near = 0;
   for (std::uint32_t lane = 0; lane < held.count; ++lane) {
@@ -288,10 +289,10 @@ std::vector<std::uint8_t> FluidPass<D, Numbers>::wide_blocks(const FluidParticle
   return wide;
 }
 
-/// Whether each place holds a PP in `region`.
+/// Whether each slot holds a PP in `region`.
 template <int D, class Numbers>
-std::vector<std::uint8_t> FluidPass<D, Numbers>::places_in(const FluidParticles<D>& fluid,
-                                                           const Region<D>& region) const {
+std::vector<std::uint8_t> FluidPass<D, Numbers>::slots_in(const FluidParticles<D>& fluid,
+                                                          const Region<D>& region) const {
   std::vector<std::uint8_t> inside(blocks_.size() * lanes, 0);
   for (std::uint32_t block = 0; block < blocks_.size(); ++block)
     for (std::uint32_t lane = 0; lane < blocks_.held(block).count; ++lane)
@@ -363,13 +364,12 @@ void FluidPass<D, Numbers>::for_each_frozen_list(const CellGrid<D>& grid, const 
   }
 }
 
-/// One pair as the pass would compute it, alone: what it adds to the centre and to the PP at a place.
+/// One pair as the pass would compute it, alone: what it adds to the centre and to the PP at a slot.
 template <int D, class Numbers>
 template <class Kernel, bool transport, bool lanes_first, class Beta>
-auto FluidPass<D, Numbers>::sums_of_pair(const Centre& centre, std::uint32_t place, const Beta& beta) const
-    -> PairSums {
-  const std::uint32_t lane = place % lanes;
-  PairBlocks<D, Numbers> alone = blocks_.one(place);
+auto FluidPass<D, Numbers>::sums_of_pair(const Centre& centre, std::uint32_t slot, const Beta& beta) const -> PairSums {
+  const std::uint32_t lane = slot % lanes;
+  PairBlocks<D, Numbers> alone = blocks_.one(slot);
   Lists partner;
   partner.add(0, centre.x, 1, [&](std::size_t) { return typename NearRows<D>::Range{lane, lane + 1}; });
   PairSums result;
@@ -399,25 +399,25 @@ std::optional<std::vector<PartnerTrace<D>>> FluidPass<D, Numbers>::trace(const F
   std::uint32_t traced = 0;
   while (traced < fluid.size() && !(fluid.id[traced] == particle && is_owned(traced))) ++traced;
   if (traced == fluid.size()) return std::nullopt;
-  const std::uint32_t place = blocks_.place(traced);
+  const std::uint32_t slot = blocks_.slot(traced);
   constexpr std::uint64_t none = ~std::uint64_t{0};  // lanes of gaps
   std::vector<std::uint64_t> ids(blocks_.size() * lanes, none);
-  for (std::uint32_t i = 0; i < fluid.size(); ++i) ids[blocks_.place(i)] = fluid.id[i];
+  for (std::uint32_t i = 0; i < fluid.size(); ++i) ids[blocks_.slot(i)] = fluid.id[i];
   Search search;
   with_pair_law(model_, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
     for (const KeptLists<D, Numbers>& lists : kept_)
       lists.for_each_pair([&](std::uint32_t i, std::uint32_t j) {
-        if ((i != place && j != place) || ids[j] == none) return;
+        if ((i != slot && j != slot) || ids[j] == none) return;
         const PairSums sums = sums_of_pair<Kernel, transport, false>(blocks_.centre(i), j, UnitFactor{});
-        keep({false, ids[i == place ? j : i], 0, i == place ? sums.centre : sums.other, sums.density});
+        keep({false, ids[i == slot ? j : i], 0, i == slot ? sums.centre : sums.other, sums.density});
       });
     for (const auto& plane : frozen_by_plane(grid, frozen))
       for_each_frozen_list(grid, frozen, plane, search, [&](const Lists& lists) {
         lists.for_each_partner([&](std::uint32_t k, std::uint32_t j) {
           const FrozenInStep<D>& fp = frozen[k];
-          if (j != place) return;
+          if (j != slot) return;
           const PairSums sums = sums_of_pair<Kernel, transport, true>(
-              centre(fp), place, NoSlipFactor<D, typename Numbers::Real>(model_, fp));
+              centre(fp), slot, NoSlipFactor<D, typename Numbers::Real>(model_, fp));
           keep({true, fp.solid, fp.index, sums.other, sums.density});
         });
       });

@@ -70,11 +70,11 @@ class FluidPass {
   FluidPass(const Model<D>& model, int threads)
       : model_(model), numbers_(model.pair, model.rest_density), threads_(threads) {}
 
-  /// Finds the pairs of which one PP lies in `region`, up to a distance of `reach` (rcut, at least 1): the sums find
-  /// all within rcut until two PPs have come nearer by the rest, or one from outside the region has entered the part
-  /// that matters. `fluid` is in the order of `grid`, whose cells are fit to that reach or a longer one. `foreign`: the
-  /// PPs that others than `moved` may change. With `apart`, the inner sums are of pairs that have nothing to do with
-  /// these.
+  /// Lists the pairs of which one PP lies in `region` and whose distance is at most `reach` (rcut, at least 1). The
+  /// lists hold all pairs within rcut as long as no PP has moved by more than half of reach - 1, and none that was
+  /// outside the region has come into what this process owns. `fluid` is in the order of `grid`, whose cells are fit to
+  /// that reach or a longer one. `foreign`: indices of the PPs that change other than by `moved`. With `apart`, the
+  /// inner sums are of pairs without a foreign PP or a neighbour in its block.
   void list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region, double reach,
             std::span<const std::uint32_t> foreign, bool apart);
   /// With the PPs in the order of `list`: densities over all PPs near each PP of the region; those of others are
@@ -95,21 +95,21 @@ class FluidPass {
   void sum_rest(const CellGrid<D>& grid) { sum_forces_of(rest, grid); }
   void add_frozen(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
                   std::vector<NeighbourSums<D>>& frozen_sums);
-  /// After all sums: the new state of the PP at this place, or of those that lie side by side from there on, as many as
+  /// After all sums: the new state of the PP at this slot, or of those that lie side by side from there on, as many as
   /// there are lanes of the state. Each PP that is not foreign must be given before the next sum.
   template <class Real>
-  MAPPM_INLINE void moved(std::uint32_t place, const Vec<D, Real>& x, const Vec<D, Real>& v) {
-    if (serves_on_) blocks_.lay(numbers_, place, x, v);
+  MAPPM_INLINE void moved(std::uint32_t slot, const Vec<D, Real>& x, const Vec<D, Real>& v) {
+    if (serves_on_) blocks_.set_motion(numbers_, slot, x, v);
   }
 
-  /// The place of PP i; what places are more than indices in a plane of cells.
-  std::uint32_t place(std::uint32_t i) const { return blocks_.place(i); }
+  /// The slot of PP i; what slots are more than indices in a plane of cells.
+  std::uint32_t slot(std::uint32_t i) const { return blocks_.slot(i); }
   std::uint32_t gap(int plane) const { return blocks_.gap(plane); }
-  /// Sums of the PP at this place.
-  NeighbourSums<D> sums(std::uint32_t place) const { return numbers_.sums(blocks_.sums(place)); }
-  /// Sums of as many PPs from this place on as there are lanes of the state, of whose number it must be a multiple.
-  MAPPM_INLINE NeighbourSums<D, IntLanes> sums_of_lanes(std::uint32_t place) const {
-    return numbers_.sums(blocks_.sums_of_lanes(place));
+  /// Sums of the PP at this slot.
+  NeighbourSums<D> sums(std::uint32_t slot) const { return numbers_.sums(blocks_.sums(slot)); }
+  /// Sums of as many PPs from this slot on as there are lanes of the state, of whose number it must be a multiple.
+  MAPPM_INLINE NeighbourSums<D, IntLanes> sums_of_lanes(std::uint32_t slot) const {
+    return numbers_.sums(blocks_.sums_of_lanes(slot));
   }
 
   /// After `add_frozen` in the step in which `fluid` was ordered: what each partner
@@ -145,7 +145,7 @@ class FluidPass {
   void for_each_block_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row,
                            double reach, Search& search, Work&& work);
   void find_boxes(const FluidParticles<D>& fluid);
-  std::uint16_t lanes_near(const FluidParticles<D>& fluid, std::uint32_t place, std::uint32_t block) const;
+  std::uint16_t lanes_near(const FluidParticles<D>& fluid, std::uint32_t slot, std::uint32_t block) const;
   template <class Work>
   void for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
                             std::span<const std::uint32_t> chosen, Search& search, Work&& work) const;
@@ -158,13 +158,13 @@ class FluidPass {
     std::int64_t density;
   };
   template <class Kernel, bool transport, bool lanes_first, class Beta>
-  PairSums sums_of_pair(const Centre& centre, std::uint32_t place, const Beta& beta) const;
+  PairSums sums_of_pair(const Centre& centre, std::uint32_t slot, const Beta& beta) const;
   void sum_densities_of(Part part, const CellGrid<D>& grid);
   void sum_forces_of(Part part, const CellGrid<D>& grid);
   template <bool foreign_alone>
   void set_densities(std::span<const double> density);
   std::vector<std::uint8_t> wide_blocks(const FluidParticles<D>& fluid) const;
-  std::vector<std::uint8_t> places_in(const FluidParticles<D>& fluid, const Region<D>& region) const;
+  std::vector<std::uint8_t> slots_in(const FluidParticles<D>& fluid, const Region<D>& region) const;
   int band_height(const CellGrid<D>& grid) const;
   template <class Work>
   void for_each_band(const CellGrid<D>& grid, Work&& work);

@@ -15,7 +15,7 @@
 
 namespace mappm {
 
-/// Wall seconds spent so far, by phase of the step ("pairs", "integrate", ...; parallel/stopwatch.hpp).
+/// Wall seconds spent so far, by phase of the step ("pairs", "integrate", ...; parallel/phase_times.hpp).
 using PhaseSeconds = std::vector<std::pair<std::string, double>>;
 
 /// What one process sent to others so far.

@@ -28,7 +28,7 @@ template <int D>
 class DoublePairs {
  public:
   using Real = double;                     // of the arithmetic
-  using Place = double;                    // a position as the lanes hold it
+  using Coordinate = double;               // a position as the lanes hold it
   using Sum = std::int64_t;                // of contributions
   using Rounding = Rounded;                // of each of them
   using ListRounding = RoundedWithExcess;  // in lists that are kept
@@ -45,12 +45,12 @@ class DoublePairs {
   double difference(int, double quanta) const { return quanta; }
   /// A position for lanes.
   template <class Wide>
-  MAPPM_INLINE Wide place(int, const Wide& x) const {
+  MAPPM_INLINE Wide coordinate(int, const Wide& x) const {
     return x;
   }
   MAPPM_INLINE static Lanes apart(const Lanes& a, const Lanes& b) { return a - b; }
-  /// A place more than rcut away from all that lie within a few rcut of a place, on one axis.
-  static double far_from(double place) { return place + 4.0 * box_quanta; }
+  /// A coordinate more than rcut away from all that lie within a few rcut of another.
+  static double far_from(double coordinate) { return coordinate + 4.0 * box_quanta; }
   /// Sums of one PP, or of lanes, in quanta of the state.
   template <class Integer>
   MAPPM_INLINE NeighbourSums<D, Integer> sums(const PairResult<D, Integer>& given) const {
@@ -71,7 +71,7 @@ template <int D>
 class SinglePairs {
  public:
   using Real = float;
-  using Place = std::int32_t;
+  using Coordinate = std::int32_t;
   using Sum = std::int32_t;
   using Rounding = Rounded;
   using ListRounding = Rounded;
@@ -82,10 +82,11 @@ class SinglePairs {
 
   SinglePairs(const PairLaw<D>& law, double rest_density) {
     for (int axis = 0; axis < D; ++axis) {
-      // 2^32 places are a window at least 8 rcut wide: in it, whichever image is taken, neighbours lie side by side.
-      while (place_[axis] * 0x1p32 * law.length[axis] < 8.0) place_[axis] *= 2.0;
-      law_.length[axis] = static_cast<float>(law.length[axis] * place_[axis]);
-      law_.shift[axis] = static_cast<float>(law.shift[axis] * impulse_ / place_[axis]);
+      // 2^32 coordinates are a window at least 8 rcut wide: in it, whichever image is taken, neighbours lie side by
+      // side.
+      while (coordinate_[axis] * 0x1p32 * law.length[axis] < 8.0) coordinate_[axis] *= 2.0;
+      law_.length[axis] = static_cast<float>(law.length[axis] * coordinate_[axis]);
+      law_.shift[axis] = static_cast<float>(law.shift[axis] * impulse_ / coordinate_[axis]);
     }
     while (density_ * 0x1p31 * density_quantum < 4.0 * highest_density_ratio * rest_density) density_ *= 2.0;
     law_.force = static_cast<float>(law.force / impulse_);
@@ -94,18 +95,20 @@ class SinglePairs {
   }
 
   const PairLaw<D, float>& law() const { return law_; }
-  double seen(int axis, double x) const { return static_cast<double>(to_fixed(x / place_[axis])) * place_[axis]; }
-  float difference(int axis, double quanta) const { return static_cast<float>(quanta / place_[axis]); }
-  /// The low 32 bits of a position in units of a place: differences wrap, and are right within half a window.
+  double seen(int axis, double x) const {
+    return static_cast<double>(to_fixed(x / coordinate_[axis])) * coordinate_[axis];
+  }
+  float difference(int axis, double quanta) const { return static_cast<float>(quanta / coordinate_[axis]); }
+  /// The low 32 bits of a position, in units of the coordinates: differences wrap, and are right within half a window.
   template <class Wide>
-  MAPPM_INLINE auto place(int axis, const Wide& x) const {
-    return lanes_of<std::int32_t>(to_fixed(x * Wide(1.0 / place_[axis])));
+  MAPPM_INLINE auto coordinate(int axis, const Wide& x) const {
+    return lanes_of<std::int32_t>(to_fixed(x * Wide(1.0 / coordinate_[axis])));
   }
   MAPPM_INLINE static FloatLanes apart(const Int32Lanes& a, const Int32Lanes& b) {
     return lanes_of<float>(wrapped_difference(a, b));
   }
-  static std::int32_t far_from(std::int32_t place) {  // half a window, at least 4 rcut
-    return static_cast<std::int32_t>(static_cast<std::uint32_t>(place) + (std::uint32_t{1} << 31));
+  static std::int32_t far_from(std::int32_t coordinate) {  // half a window, at least 4 rcut
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(coordinate) + (std::uint32_t{1} << 31));
   }
   /// Sums keep their momentum exactly: a quantum here is a whole number of those of the state.
   template <class Integer>
@@ -115,7 +118,7 @@ class SinglePairs {
     NeighbourSums<D, Wide> sums;
     for (int axis = 0; axis < D; ++axis) {
       sums.impulse[axis] = widened(given.impulse[axis]) * Wide(static_cast<std::int64_t>(impulse_));
-      sums.shift[axis] = widened(given.shift[axis]) * Wide(static_cast<std::int64_t>(place_[axis]));
+      sums.shift[axis] = widened(given.shift[axis]) * Wide(static_cast<std::int64_t>(coordinate_[axis]));
     }
     sums.shear = widened(given.shear) * Wide(static_cast<std::int64_t>(impulse_));
     sums.agitation = widened(given.agitation) * Wide(static_cast<std::int64_t>(impulse_));
@@ -132,12 +135,12 @@ class SinglePairs {
   /// 8 rcut or more, a density modulo 80 times that at rest or more. A particle that receives too much for a step
   /// (`advance`) but less than all of that is found as in double precision.
   static constexpr double impulse_ = 0x1p-26 / velocity_quantum;
-  Vec<D, double> place_ = quanta_of_the_least_place();
+  Vec<D, double> coordinate_ = least_quanta_of_coordinates();
   double density_ = 1.0;
-  static Vec<D, double> quanta_of_the_least_place() {
-    Vec<D, double> place;
-    for (int axis = 0; axis < D; ++axis) place[axis] = 4.0;  // `to_fixed` of a position stays in its range
-    return place;
+  static Vec<D, double> least_quanta_of_coordinates() {
+    Vec<D, double> quanta;
+    for (int axis = 0; axis < D; ++axis) quanta[axis] = 4.0;  // `to_fixed` of a position stays in its range
+    return quanta;
   }
   PairLaw<D, float> law_;
 };

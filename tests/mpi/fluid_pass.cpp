@@ -74,23 +74,23 @@ std::vector<double> sum(Pass& pass, FluidParticles<D>& fluid, const CellGrid<D>&
 template <class Pass, int D>
 void tell_of_motion(Pass& pass, const FluidParticles<D>& fluid, const std::vector<std::uint8_t>& foreign) {
   for (std::uint32_t i = 0; i < fluid.size();) {
-    const std::uint32_t place = pass.place(i);
-    const bool lanes = place % lane_count == 0 && i + lane_count <= fluid.size() &&
-                       pass.place(i + lane_count - 1) == place + lane_count - 1;
+    const std::uint32_t slot = pass.slot(i);
+    const bool lanes = slot % lane_count == 0 && i + lane_count <= fluid.size() &&
+                       pass.slot(i + lane_count - 1) == slot + lane_count - 1;
     if (lanes && std::count(foreign.begin() + i, foreign.begin() + i + lane_count, 0) == lane_count) {
       Vec<D, Lanes> x, v;
       for (int axis = 0; axis < D; ++axis) {
         x[axis] = load_lanes(&fluid.x(axis)[i]);
         v[axis] = load_lanes(&fluid.v(axis)[i]);
       }
-      pass.moved(place, x, v);
+      pass.moved(slot, x, v);
       i += lane_count;
       continue;
     }
     if (foreign[i] == 0) {
       Vec<D, double> x = fluid.position(i), v;
       for (int axis = 0; axis < D; ++axis) v[axis] = fluid.v(axis)[i];
-      pass.moved(place, x, v);
+      pass.moved(slot, x, v);
     }
     ++i;
   }
@@ -127,7 +127,7 @@ AllSums sums_over(const Model<2>& model, FluidParticles<2> fluid, double behind,
   pass.list(fluid, grid, Region<2>::whole_box(), kind == Lists::once ? 1.0 : reach, all_of(fluid), false);
   AllSums result;
   result.density = sum(pass, fluid, grid);
-  for (std::uint32_t i = 0; i < fluid.size(); ++i) result.forces.push_back(pass.sums(pass.place(i)));
+  for (std::uint32_t i = 0; i < fluid.size(); ++i) result.forces.push_back(pass.sums(pass.slot(i)));
   return result;
 }
 
@@ -239,7 +239,7 @@ class AllPairs {
     }
     return sums;
   }
-  /// What one point gives another, from whose place to that of the first the vector of beta points.
+  /// What one point gives another, from whose position to that of the first the vector of beta points.
   template <class Beta>
   NeighbourSums<D> of_pair(const PairPoint<D>& one, const PairPoint<D>& other, const Beta& beta) const {
     const auto pair = pair_of(numbers_, one, other, difference);
@@ -346,7 +346,7 @@ void expect_sums_of_all_pairs(const Case& test) {
   std::size_t pairs = 0;
   for (std::uint32_t i = 0; i < fluid.size(); ++i) {
     if (!region.contains(fluid.position(i))) continue;
-    const NeighbourSums<D> sums = all.forces(i, density), found = pass.sums(pass.place(i));
+    const NeighbourSums<D> sums = all.forces(i, density), found = pass.sums(pass.slot(i));
     ASSERT_EQ(found.impulse, sums.impulse) << "particle " << i;
     ASSERT_EQ(found.shift, sums.shift) << "particle " << i;
     ASSERT_EQ(found.shear, sums.shear) << "particle " << i;
@@ -407,7 +407,8 @@ TEST(FluidPass, sums_over_all_pairs_with_other_kernels) {
     }
 }
 
-/// Few particles in a long box: a block of them is wider than the window in which places of single precision differ.
+/// Few particles in a long box: a block of them is wider than the window in which coordinates of single precision
+/// differ.
 TEST(FluidPass, sums_over_all_pairs_where_blocks_are_wide) {
   const std::string wide = swirl_in("[40.0, 5.0]"), long_box = swirl_in("[40.0, 5.0, 5.0]");
   for (const Lists kind : all_kinds)
@@ -423,12 +424,12 @@ TEST(FluidPass, sums_over_all_pairs_where_blocks_are_wide) {
 /// FPs anywhere, owned and not, by whatever solids.
 template <int D>
 std::vector<FrozenInStep<D>> some_frozen(const Model<D>& model, std::size_t count) {
-  const FluidParticles<D> places = heap(model, count);
+  const FluidParticles<D> positions = heap(model, count);
   std::vector<FrozenInStep<D>> frozen(count);
   for (std::uint32_t k = 0; k < count; ++k) {
     FrozenInStep<D>& fp = frozen[k];
     for (int axis = 0; axis < D; ++axis) {
-      fp.place.x[axis] = places.x(axis)[k] + 3.0;
+      fp.place.x[axis] = positions.x(axis)[k] + 3.0;
       fp.place.v[axis] = 0.01 * (k % 7);
     }
     fp.place.normal[static_cast<int>(k % D)] = 1.0;
@@ -505,7 +506,7 @@ void expect_frozen_sums_of_all_pairs(const std::string& scene, int threads) {
   }
   for (std::uint32_t i = 0; i < fluid.size(); ++i) {
     if (!region.contains(fluid.position(i))) continue;
-    const NeighbourSums<D> sums_of_fluid = all.forces(i, density), found = pass.sums(pass.place(i));
+    const NeighbourSums<D> sums_of_fluid = all.forces(i, density), found = pass.sums(pass.slot(i));
     ASSERT_EQ(found.impulse, sums_of_fluid.impulse + on_fluid[i].impulse) << "particle " << i;
     ASSERT_EQ(found.shift, sums_of_fluid.shift + on_fluid[i].shift) << "particle " << i;
     ASSERT_EQ(found.shear, sums_of_fluid.shear + on_fluid[i].shear) << "particle " << i;
@@ -537,7 +538,7 @@ TEST(FluidPass, names_an_owned_particle_whose_density_is_out_of_range) {
     return pass.close_densities(others, density);
   };
   EXPECT_FALSE(wrong({}).has_value());
-  // Eighty-one in one place have 81 W(0), and W(0) is 7 / pi, of a rest density of 12.25.
+  // Eighty-one at one position have 81 W(0), and W(0) is 7 / pi, of a rest density of 12.25.
   for (int n = 0; n < 80; ++n) {
     fluid.id.push_back(1000 + fluid.id.size());
     for (auto& values : fluid.field) values.push_back(values[100]);

@@ -291,7 +291,7 @@ TEST_F(ResidentsTest, a_stay_ends_with_that_of_a_neighbour_where_it_has_lasted_h
     do {
       move(0, x += move_of_a_step * 0.5 * skin);
       residents_.plan(++step);
-      residents_.fall_in(step, std::max(step, plan));
+      residents_.adopt_plan(step, std::max(step, plan));
     } while (residents_.lasts() && receive({}));
     residents_.leave(fluid_);
     fluid_ = {};
@@ -309,7 +309,7 @@ TEST_F(ResidentsTest, the_end_of_a_stay_at_rest_is_not_to_be_seen) {
   for (std::uint64_t step = 1; step < 9; ++step) {
     move(0, 6.0);
     EXPECT_EQ(residents_.plan(step), residents_.never);
-    residents_.fall_in(step, step + 1);  // nor does it end with another's
+    residents_.adopt_plan(step, step + 1);  // nor does it end with another's
     ASSERT_TRUE(receive({}));
   }
 }

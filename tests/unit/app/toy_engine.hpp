@@ -23,7 +23,7 @@ class ToyEngine {
         static_cast<Int128>(state_.fluid.size()) * static_cast<Int128>(kick / velocity_quantum);
     ++state_.step;
     if (state_.step == bad_step)
-      fault_.note({bad_step - 1, FaultPlace::What::fluid_motion, 1}, "step 7: particle 1: v = 99: too fast");
+      fault_.note({bad_step - 1, FaultOrigin::What::fluid_motion, 1}, "step 7: particle 1: v = 99: too fast");
     if (state_.step == signal_step) std::raise(SIGTERM);
     if (state_.step == full_step) disk_.emplace(2500);  // enough for the series and the record, not for a snapshot
   }

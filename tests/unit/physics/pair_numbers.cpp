@@ -107,9 +107,9 @@ TEST(SinglePairs, see_one_distance_in_lanes_and_alone_whatever_the_image) {
         const float alone =
             single.difference(axis, nearest_difference(single.seen(axis, a), single.seen(axis, wrap_position(b))));
         EXPECT_EQ(single.difference(axis, single.seen(axis, a) - single.seen(axis, b)), alone);
-        const Int32Lanes one(single.place(axis, a)), other(single.place(axis, b));
+        const Int32Lanes one(single.coordinate(axis, a)), other(single.coordinate(axis, b));
         EXPECT_EQ(SinglePairs<2>::apart(one, other)[0], alone);
-        EXPECT_EQ(single.place(axis, Lanes(b))[0], single.place(axis, b));
+        EXPECT_EQ(single.coordinate(axis, Lanes(b))[0], single.coordinate(axis, b));
         EXPECT_LE(std::fabs(static_cast<double>(alone * single.law().length[axis]) - (a - b) / cutoff), 2e-7);
       }
   }
