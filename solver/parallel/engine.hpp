@@ -27,34 +27,35 @@ struct ParallelOptions {
 };
 
 template <int D>
-class ParallelEngine {
+class ParallelEngine final : public Engine<D> {
  public:
   /// `state`: this process' share under `domains`. The borders are first moved to the particle load.
   ParallelEngine(const Model<D>& model, const Domains<D>& domains, const Communicator& communicator, State<D>&& state,
                  const ParallelOptions& options);
 
-  void step();
-  std::uint64_t present_step() const { return state_.step; }
-  State<D>& state();
-  Sample<D> sample();
-  const FirstFault& first_fault() const { return fault_; }
-  const FirstOverlaps& overlaps() const { return overlaps_; }
-  PhaseSeconds phase_seconds() const { return times_.seconds(); }
-  Traffic traffic() const;
+  void step() override;
+  std::uint64_t present_step() const override { return state_.step; }
+  State<D>& state() override;
+  Sample<D> sample() override;
+  const FirstFault& first_fault() const override { return fault_; }
+  const FirstOverlaps& overlaps() const override { return overlaps_; }
+  PhaseSeconds phase_seconds() const override { return times_.seconds(); }
+  std::optional<DomainReport<D>> domain_report() const override {
+    return DomainReport<D>{traffic(), orderings_, domains_.cuts()};
+  }
+  std::vector<FaceImpulse<D>> faces() const override { return faces_; }
   /// Steps so far in which the PPs of this process were put in order anew.
   std::uint64_t orderings() const { return orderings_; }
   const Domains<D>& domains() const { return domains_; }
-  /// The ledger of the faces in the last step, in the order of partners, then the entry of all partners; empty where
-  /// none was due.
-  const std::vector<FaceImpulse<D>>& faces() const { return faces_; }
 
-  void trace_next_step(std::uint64_t particle) { traced_particle_ = particle; }
-  const MaybeTrace<D>& last_trace() const { return trace_; }
+  void trace_next_step(std::uint64_t particle) override { traced_particle_ = particle; }
+  const MaybeTrace<D>& last_trace() const override { return trace_; }
 
   /// Moves the borders of the domains to the particle load and every particle to its new owner.
   void rebalance();
 
  private:
+  Traffic traffic() const;
   void start_domains();
   bool faces_due() const {
     const std::uint64_t step = state_.step + 1;
