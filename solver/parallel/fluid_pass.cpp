@@ -7,7 +7,7 @@
 #include <limits>
 
 #ifdef MAPPM_FLOATING_SUMS
-#include "parallel/floating_pairs.hpp"
+#include "parallel/floating_lanes.hpp"
 #endif
 
 namespace mappm {
@@ -425,13 +425,13 @@ std::optional<std::vector<PartnerTrace<D>>> FluidPass<D, Numbers>::trace(const F
   return partners;
 }
 
-template class FluidPass<2, DoublePairs<2>>;
-template class FluidPass<3, DoublePairs<3>>;
-template class FluidPass<2, SinglePairs<2>>;
-template class FluidPass<3, SinglePairs<3>>;
+template class FluidPass<2, DoubleLanes<2>>;
+template class FluidPass<3, DoubleLanes<3>>;
+template class FluidPass<2, SingleLanes<2>>;
+template class FluidPass<3, SingleLanes<3>>;
 #ifdef MAPPM_FLOATING_SUMS
-template class FluidPass<2, FloatingPairs<2>>;
-template class FluidPass<3, FloatingPairs<3>>;
+template class FluidPass<2, FloatingLanes<2>>;
+template class FluidPass<3, FloatingLanes<3>>;
 #endif
 
 }  // namespace mappm

@@ -61,7 +61,7 @@ struct Candidates {
   }
 };
 
-/// `Numbers`: DoublePairs or SinglePairs, as the model has it.
+/// `Numbers`: DoubleLanes or SingleLanes, as the model has it.
 template <int D, class Numbers>
 class FluidPass {
  public:
@@ -183,12 +183,12 @@ class FluidPass {
 
 /// The pass in the precision of the model.
 template <int D>
-using ModelPass = std::variant<FluidPass<D, DoublePairs<D>>, FluidPass<D, SinglePairs<D>>>;
+using ModelPass = std::variant<FluidPass<D, DoubleLanes<D>>, FluidPass<D, SingleLanes<D>>>;
 
 template <int D>
 ModelPass<D> make_pass(const Model<D>& model, int threads) {
-  if (model.terms.single) return FluidPass<D, SinglePairs<D>>(model, threads);
-  return FluidPass<D, DoublePairs<D>>(model, threads);
+  if (model.terms.single) return FluidPass<D, SingleLanes<D>>(model, threads);
+  return FluidPass<D, DoubleLanes<D>>(model, threads);
 }
 
 }  // namespace mappm

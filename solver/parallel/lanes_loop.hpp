@@ -62,7 +62,7 @@ MAPPM_INLINE void pair_block(const Numbers& numbers, PairBlock<D, Numbers>& bloc
   pair.v2 = RealLanes(centre.volume.v2) + load_lanes(block.v2);
   pair.pv2 = RealLanes(centre.volume.pv2) + load_lanes(block.pv2);
   const auto given = fluid_pair<Kernel, transport, Rounding>(numbers.law(), pair, r, q, beta(r));
-  const auto wrapped = [](const auto& lanes) { return lanes_of<Wrapping<typename Numbers::Sum>>(lanes); };
+  const auto wrapped = [](const auto& lanes) { return converted<Wrapping<typename Numbers::Sum>>(lanes); };
   for (int axis = 0; axis < D; ++axis) {
     const auto impulse = lanes_first ? wrapped(given.impulse[axis]) : -wrapped(given.impulse[axis]);
     add_to(block.impulse[axis], impulse);
@@ -315,7 +315,7 @@ MAPPM_INLINE void sum_densities_of_blocks(const Numbers& numbers, PairBlock<D, N
         sum = detail::SumLanes<Sum>(static_cast<Wrapping<Sum>>(-Rounding::excess * count));
       },
       [&](std::uint32_t block, const RealLanes& q) __attribute__((always_inline)) {
-        const auto given = lanes_of<Wrapping<Sum>>(pair_density<Kernel, Rounding, D>(numbers.law(), q));
+        const auto given = converted<Wrapping<Sum>>(pair_density<Kernel, Rounding, D>(numbers.law(), q));
         detail::add_to(blocks[block].density, given);
         sum += given;
       },

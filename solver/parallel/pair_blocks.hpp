@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/column.hpp"
+#include "parallel/lane_numbers.hpp"
 #include "particles/cell_grid.hpp"
 #include "particles/model.hpp"
-#include "physics/pair_numbers.hpp"
 
 namespace mappm {
 
@@ -102,12 +102,12 @@ class PairBlocks {
   MAPPM_INLINE void set_motion(const Numbers& numbers, std::uint32_t slot, const Vec<D, Wide>& x,
                                const Vec<D, Wide>& v) {
     using Real = typename Numbers::Real;
-    const auto zero = lanes_of<Sum>(Wide(0.0));
+    const auto zero = converted<Sum>(Wide(0.0));
     Block& block = blocks_[slot / lanes];
     const std::uint32_t lane = slot % lanes;
     for (int axis = 0; axis < D; ++axis) {
       store_lanes(numbers.coordinate(axis, x[axis]), &block.x[axis][lane]);
-      store_lanes(lanes_of<Real>(v[axis]), &block.v[axis][lane]);
+      store_lanes(converted<Real>(v[axis]), &block.v[axis][lane]);
       store_lanes(zero, &block.impulse[axis][lane]);
       store_lanes(zero, &block.shift[axis][lane]);
     }
@@ -122,8 +122,8 @@ class PairBlocks {
     Block& block = blocks_[slot / lanes];
     const std::uint32_t lane = slot % lanes;
     const auto volume = volume_terms(density, model.rest_density, 1.0, model.background);
-    store_lanes(lanes_of<Real>(volume.v2), &block.v2[lane]);
-    store_lanes(lanes_of<Real>(volume.pv2), &block.pv2[lane]);
+    store_lanes(converted<Real>(volume.v2), &block.v2[lane]);
+    store_lanes(converted<Real>(volume.pv2), &block.pv2[lane]);
   }
 
   const Block& operator[](std::uint32_t block) const { return blocks_[block]; }
@@ -188,11 +188,11 @@ class PairBlocks {
     return density_of(slot, [](const Sum* sum) { return static_cast<Wrapping<Sum>>(*sum); });
   }
   MAPPM_INLINE auto density_of_lanes(std::uint32_t slot) const {
-    return density_of(slot, [](const Sum* sums) { return lanes_of<Wrapping<Sum>>(load_as_many(sums)); });
+    return density_of(slot, [](const Sum* sums) { return converted<Wrapping<Sum>>(load_as_many(sums)); });
   }
   /// Of as many PPs from `slot` on as there are lanes of the state.
   MAPPM_INLINE auto sums_of_lanes(std::uint32_t slot) const {
-    return sums_of(slot, [](const Sum* sums) { return lanes_of<Wrapping<Sum>>(load_as_many(sums)); });
+    return sums_of(slot, [](const Sum* sums) { return converted<Wrapping<Sum>>(load_as_many(sums)); });
   }
 
  private:
@@ -204,7 +204,7 @@ class PairBlocks {
   template <class Load>
   MAPPM_INLINE auto density_of(std::uint32_t slot, Load&& load) const {
     const auto sum = load(&blocks_[slot / lanes].density[slot % lanes]);
-    return lanes_of<Sum>(sum - std::decay_t<decltype(sum)>(excess_of(slot / lanes)));
+    return converted<Sum>(sum - std::decay_t<decltype(sum)>(excess_of(slot / lanes)));
   }
   /// load(from): sums from there on, as numbers that wrap.
   template <class Load>
@@ -213,13 +213,13 @@ class PairBlocks {
     const std::uint32_t lane = slot % lanes;
     using Wide = decltype(load(block.density));
     const auto excess = Wide(excess_of(slot / lanes)), of_shift = shifts_ ? excess : Wide(0);
-    PairResult<D, decltype(lanes_of<Sum>(excess))> sums;
+    PairResult<D, decltype(converted<Sum>(excess))> sums;
     for (int axis = 0; axis < D; ++axis) {  // partners received them with the other sign
-      sums.impulse[axis] = lanes_of<Sum>(load(&block.impulse[axis][lane]) + excess);
-      sums.shift[axis] = lanes_of<Sum>(load(&block.shift[axis][lane]) + of_shift);
+      sums.impulse[axis] = converted<Sum>(load(&block.impulse[axis][lane]) + excess);
+      sums.shift[axis] = converted<Sum>(load(&block.shift[axis][lane]) + of_shift);
     }
-    sums.shear = lanes_of<Sum>(load(&block.shear[lane]) - of_shift);
-    sums.agitation = lanes_of<Sum>(load(&block.agitation[lane]) - of_shift);
+    sums.shear = converted<Sum>(load(&block.shear[lane]) - of_shift);
+    sums.agitation = converted<Sum>(load(&block.agitation[lane]) - of_shift);
     return sums;
   }
   Wrapping<Sum> excess_of(std::uint32_t block) const {

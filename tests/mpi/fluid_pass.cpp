@@ -150,8 +150,8 @@ void expect_blindness() {
 }
 
 TEST(FluidPass, does_not_see_what_lies_behind_the_last_particle) {
-  expect_blindness<DoublePairs<2>>();
-  expect_blindness<SinglePairs<2>>();
+  expect_blindness<DoubleLanes<2>>();
+  expect_blindness<SingleLanes<2>>();
 }
 
 /// Particles at random all over the box, every fifth of them in a heap narrower than the cutoff: rows that hold many
@@ -366,7 +366,7 @@ TEST(FluidPass, leaves_little_for_the_second_part) {
   std::vector<std::uint32_t> foreign;
   for (std::uint32_t i = 0; i < fluid.size(); ++i)
     if (fluid.x(0)[i] > 0.9 * box_quanta) foreign.push_back(i);
-  FluidPass<2, DoublePairs<2>> pass(built.model, 1);
+  FluidPass<2, DoubleLanes<2>> pass(built.model, 1);
   pass.list(fluid, grid, Region<2>::whole_box(), reach, foreign, true);
   ASSERT_EQ(pass.kept().size(), 2u);
   const auto first = static_cast<double>(pass.kept()[0].blocks().size()),
@@ -385,10 +385,10 @@ TEST(FluidPass, sums_over_all_pairs) {
     for (const int threads : {1, 3})
       for (const double across : {1.0, 1.45, 3.0})
         for (const double along : {1.0, 8.0}) {
-          expect_sums_of_all_pairs<2, DoublePairs<2>, WendlandC2>({swirl, 1000, along, across, threads, kind, 5000});
-          expect_sums_of_all_pairs<3, DoublePairs<3>, WendlandC2>({deep, 1000, along, across, threads, kind, 5000});
-          expect_sums_of_all_pairs<2, SinglePairs<2>, WendlandC2>({swirl, 1000, along, across, threads, kind, 5000});
-          expect_sums_of_all_pairs<3, SinglePairs<3>, WendlandC2>({deep, 1000, along, across, threads, kind, 5000});
+          expect_sums_of_all_pairs<2, DoubleLanes<2>, WendlandC2>({swirl, 1000, along, across, threads, kind, 5000});
+          expect_sums_of_all_pairs<3, DoubleLanes<3>, WendlandC2>({deep, 1000, along, across, threads, kind, 5000});
+          expect_sums_of_all_pairs<2, SingleLanes<2>, WendlandC2>({swirl, 1000, along, across, threads, kind, 5000});
+          expect_sums_of_all_pairs<3, SingleLanes<3>, WendlandC2>({deep, 1000, along, across, threads, kind, 5000});
         }
 }
 
@@ -396,13 +396,13 @@ TEST(FluidPass, sums_over_all_pairs_with_other_kernels) {
   const std::string deep = swirl_in("[4.0, 5.0, 6.0]");
   for (const Lists kind : all_kinds)
     for (const int threads : {1, 2}) {
-      expect_sums_of_all_pairs<2, DoublePairs<2>, Lucy>({with_kernel(swirl, "lucy"), 1000, 8, 1, threads, kind, 5000});
-      expect_sums_of_all_pairs<3, SinglePairs<3>, Lucy>(
+      expect_sums_of_all_pairs<2, DoubleLanes<2>, Lucy>({with_kernel(swirl, "lucy"), 1000, 8, 1, threads, kind, 5000});
+      expect_sums_of_all_pairs<3, SingleLanes<3>, Lucy>(
           {with_kernel(deep, "lucy"), 1000, 8, 1.45, threads, kind, 5000});
       // Its weight is singular, and an impulse must not leave its range.
-      expect_sums_of_all_pairs<2, DoublePairs<2>, MpsWeight>(
+      expect_sums_of_all_pairs<2, DoubleLanes<2>, MpsWeight>(
           {with_kernel(swirl, "mps"), 0, 8, 1, threads, kind, 1000, true});
-      expect_sums_of_all_pairs<3, SinglePairs<3>, MpsWeight>(
+      expect_sums_of_all_pairs<3, SingleLanes<3>, MpsWeight>(
           {with_kernel(swirl_in("[4.0, 4.0, 4.0]"), "mps"), 0, 8, 1.45, threads, kind, 5000, true});
     }
 }
@@ -413,11 +413,11 @@ TEST(FluidPass, sums_over_all_pairs_where_blocks_are_wide) {
   const std::string wide = swirl_in("[40.0, 5.0]"), long_box = swirl_in("[40.0, 5.0, 5.0]");
   for (const Lists kind : all_kinds)
     for (const double along : {1.0, 8.0}) {
-      expect_sums_of_all_pairs<2, DoublePairs<2>, WendlandC2>({wide, 200, along, 1, 1, kind, 100});
-      expect_sums_of_all_pairs<2, SinglePairs<2>, WendlandC2>({wide, 200, along, 1, 1, kind, 100});
+      expect_sums_of_all_pairs<2, DoubleLanes<2>, WendlandC2>({wide, 200, along, 1, 1, kind, 100});
+      expect_sums_of_all_pairs<2, SingleLanes<2>, WendlandC2>({wide, 200, along, 1, 1, kind, 100});
       // In space two rows share a block.
       for (std::size_t count = 20; count < 120; count += 2)
-        expect_sums_of_all_pairs<3, SinglePairs<3>, WendlandC2>({long_box, count, along, 1, 1, kind, 0});
+        expect_sums_of_all_pairs<3, SingleLanes<3>, WendlandC2>({long_box, count, along, 1, 1, kind, 0});
     }
 }
 
@@ -517,10 +517,10 @@ void expect_frozen_sums_of_all_pairs(const std::string& scene, int threads) {
 TEST(FluidPass, sums_over_all_pairs_with_frozen_particles) {
   const std::string deep = swirl_in("[4.0, 5.0, 6.0]");
   for (const int threads : {1, 3}) {
-    expect_frozen_sums_of_all_pairs<2, DoublePairs<2>>(swirl, threads);
-    expect_frozen_sums_of_all_pairs<2, SinglePairs<2>>(swirl, threads);
-    expect_frozen_sums_of_all_pairs<3, DoublePairs<3>>(deep, threads);
-    expect_frozen_sums_of_all_pairs<3, SinglePairs<3>>(deep, threads);
+    expect_frozen_sums_of_all_pairs<2, DoubleLanes<2>>(swirl, threads);
+    expect_frozen_sums_of_all_pairs<2, SingleLanes<2>>(swirl, threads);
+    expect_frozen_sums_of_all_pairs<3, DoubleLanes<3>>(deep, threads);
+    expect_frozen_sums_of_all_pairs<3, SingleLanes<3>>(deep, threads);
   }
 }
 
@@ -531,7 +531,7 @@ TEST(FluidPass, names_an_owned_particle_whose_density_is_out_of_range) {
   grid.fit(Region<2>::whole_box(), lengths_in_reach(built.model), {{8, 1}});
   const auto wrong = [&](const std::vector<std::uint32_t>& others) {
     grid.sort(fluid);
-    FluidPass<2, DoublePairs<2>> pass(built.model, 1);
+    FluidPass<2, DoubleLanes<2>> pass(built.model, 1);
     pass.list(fluid, grid, Region<2>::whole_box(), 1.0, all_of(fluid), false);
     std::vector<double> density(fluid.size());
     sum_densities(pass, fluid, grid);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/lanes.hpp"
 #include "physics/state_equation.hpp"
 #include "unit/physics/pair_setup.hpp"
 
