@@ -123,16 +123,18 @@ void ParallelEngine<D>::sum_densities(bool alone) {
     times_.end(Phase::densities);
   }
   const bool stay = halo_->end_exchange(state_, *residents_, copies_, times_);
-  const bool single_step = alone || (!stay && !residents_->pays());
+  const StayLength length =
+      alone || !residents_->schedule().pays() ? StayLength::single_step : StayLength::several_steps;
   place_solids();
   times_.end(Phase::solids);
   if (!model_.terms.fluid) return;
-  if (!stay) order_fluid(single_step);
+  if (!stay) order_fluid(length);
   std::visit(
       [&](auto& pass) {
         if (!stay) {
-          pass.list(state_.fluid, grid_, residents_->may_come_to_own(), single_step ? 1.0 : 1.0 + skin,
-                    residents_->foreign(), halo_->traffic().neighbours > 0);
+          pass.list(state_.fluid, grid_, residents_->may_come_to_own(),
+                    length == StayLength::single_step ? 1.0 : 1.0 + skin, residents_->foreign(),
+                    halo_->traffic().neighbours > 0);
           times_.end(Phase::lists);
           pass.sum_inner_densities(grid_);
         }
@@ -149,10 +151,10 @@ void ParallelEngine<D>::sum_densities(bool alone) {
 }
 
 template <int D>
-void ParallelEngine<D>::order_fluid(bool single_step) {
+void ParallelEngine<D>::order_fluid(StayLength length) {
   grid_.sort(state_.fluid);
   find_rows();
-  residents_->settle(state_.fluid, single_step);
+  residents_->settle(state_.fluid, length);
   ++orderings_;
   times_.end(Phase::sort);
 }
@@ -181,7 +183,7 @@ void ParallelEngine<D>::sum_forces() {
   times_.end(Phase::exchange);
   std::visit([&](auto& pass) { pass.sum_inner(grid_); }, pass_);
   times_.end(Phase::pairs);
-  halo_->end_densities(state_.fluid, *residents_, density_, solids_);
+  halo_->end_densities(*residents_, density_, solids_);
   times_.end(Phase::exchange);
   std::visit(
       [&](auto& pass) {
@@ -333,7 +335,7 @@ void ParallelEngine<D>::move_fluid() {
         for (const std::uint32_t i : residents_->near_outside()) all.move(pass, state_.fluid, i, pass.slot(i), 1);
       },
       pass_);
-  residents_->moved(all.farthest());
+  residents_->schedule().owned_moved(all.farthest());
   state_.outside_impulse += all.impulse();
 }
 

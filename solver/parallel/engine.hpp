@@ -63,7 +63,7 @@ class ParallelEngine final : public Engine<D> {
   }
   void sum_densities(bool alone);
   void place_solids();
-  void order_fluid(bool single_step);
+  void order_fluid(StayLength length);
   void close_densities();
   void sum_forces();
   void explain_pairs();

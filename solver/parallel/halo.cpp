@@ -66,8 +66,8 @@ Vec<D, double> Halo<D>::in_frame(Vec<D, double> x) const {
 template <int D>
 void Halo<D>::begin_exchange(State<D>& state, Residents<D>& residents, PhaseTimes& times) {
   // Alone, a process ends its stay when it must.
-  const std::uint64_t plan = traffic_.neighbours > 0 ? residents.plan(state.step) : Residents<D>::never;
-  if (!residents.lasts()) residents.leave(state.fluid);
+  const std::uint64_t plan = traffic_.neighbours > 0 ? residents.schedule().plan(state.step) : StaySchedule::never;
+  if (!residents.schedule().lasts()) residents.leave(state.fluid);
   for (Buffer& buffer : out_) put(buffer, plan);
   pack_fluid(state.fluid, residents);
   times.end(Phase::exchange);
@@ -81,9 +81,9 @@ template <int D>
 bool Halo<D>::end_exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, PhaseTimes& times) {
   receive_messages();
   std::vector<BufferReader> readers(in_.begin(), in_.end());
-  for (BufferReader& reader : readers) residents.adopt_plan(state.step, reader.get<std::uint64_t>());
+  for (BufferReader& reader : readers) residents.schedule().adopt_plan(state.step, reader.get<std::uint64_t>());
   const std::vector<BufferReader> of_fluid = readers;
-  const bool stay = residents.lasts() && residents.refresh(state.fluid, readers);
+  const bool stay = residents.schedule().lasts() && residents.refresh(state.fluid, readers);
   if (!stay) {
     if (residents.staying()) {
       residents.leave(state.fluid);
@@ -275,11 +275,10 @@ void Halo<D>::put_frozen_densities(const PlacedSolids<D>& solids) {
 }
 
 template <int D>
-void Halo<D>::end_densities(const FluidParticles<D>& fluid, Residents<D>& residents, std::span<double> density,
-                            PlacedSolids<D>& solids) {
+void Halo<D>::end_densities(Residents<D>& residents, std::span<double> density, PlacedSolids<D>& solids) {
   receive_messages();
   std::vector<BufferReader> readers(in_.begin(), in_.end());
-  for (std::size_t n = 0; n < readers.size(); ++n) residents.take_densities(fluid, n, readers[n], density);
+  for (std::size_t n = 0; n < readers.size(); ++n) residents.take_densities(n, readers[n], density);
   take_frozen_densities(readers, solids);
 }
 

@@ -58,8 +58,7 @@ class Halo {
   void begin_densities(const FluidParticles<D>& fluid, const Residents<D>& residents, std::span<double> density,
                        const PlacedSolids<D>& solids);
   /// Those of ghosts, from others.
-  void end_densities(const FluidParticles<D>& fluid, Residents<D>& residents, std::span<double> density,
-                     PlacedSolids<D>& solids);
+  void end_densities(Residents<D>& residents, std::span<double> density, PlacedSolids<D>& solids);
 
   /// Delivers reports to the owners of the solids; returns those for solids owned here.
   std::vector<HomeReport<D>> send_home(const std::vector<Solid<D>>& copies, std::vector<HomeReport<D>>&& reports);

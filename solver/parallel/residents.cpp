@@ -1,11 +1,10 @@
 #include "parallel/residents.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <iterator>
-#include <numeric>
+#include <utility>
 
 #include "physics/fluid_pair.hpp"
 
@@ -35,7 +34,22 @@ Residents<D>::Residents(const Model<D>& model, const Region<D>& region, const st
 }
 
 template <int D>
-void Residents<D>::settle(const FluidParticles<D>& fluid, bool single_step) {
+void Residents<D>::settle(const FluidParticles<D>& fluid, StayLength length) {
+  sort_out(fluid);
+  schedule_.begin(length);
+  up_to_date_.assign(foreign_.size(), 0);
+  std::vector<std::uint64_t> ids;
+  ids.reserve(foreign_.size());
+  for (const std::uint32_t i : foreign_) ids.push_back(fluid.id[i]);
+  table_.fill(std::move(ids));
+  find_images(fluid);
+  states_.clear(foreign_.size());
+  densities_.clear(foreign_.size());
+}
+
+/// What can be needed elsewhere, and what is or can become another's.
+template <int D>
+void Residents<D>::sort_out(const FluidParticles<D>& fluid) {
   for (auto& candidates : candidates_) candidates.clear();
   foreign_.clear();
   near_outside_.clear();
@@ -62,77 +76,24 @@ void Residents<D>::settle(const FluidParticles<D>& fluid, bool single_step) {
   }
   near_ = foreign_.size();
   foreign_.insert(foreign_.end(), ghosts.begin(), ghosts.end());
-  steps_ = 1;
-  travelled_ = single_step ? skin : 0.0;
-  farthest_ = 0.0;
-  end_ = never;
-  ending_ = false;
-  staying_ = true;
-  up_to_date_.assign(foreign_.size(), 0);
-  table_.assign(std::bit_ceil(2 * foreign_.size() + 1), none);
-  twins_.resize(foreign_.size());
-  std::iota(twins_.begin(), twins_.end(), 0u);
-  for (std::uint32_t n = 0; n < foreign_.size(); ++n) {
-    const std::uint64_t id = fluid.id[foreign_[n]];
-    const std::uint32_t* probe = probe_of(id);
-    for (; *probe != none; probe = next(probe))
-      if (twins_[n] == n && fluid.id[foreign_[*probe]] == id) std::swap(twins_[n], twins_[*probe]);
-    table_[static_cast<std::size_t>(probe - table_.data())] = n;
-  }
+}
+
+template <int D>
+void Residents<D>::find_images(const FluidParticles<D>& fluid) {
   for (std::size_t n = 0; n < needed_.size(); ++n) {
     if (!needed_[n].image_shift) continue;
     for (Candidate& candidate : candidates_[n]) {
-      const std::uint64_t id = fluid.id[candidate.particle];
       const Vec<D, double> image = fluid.position(candidate.particle) + *needed_[n].image_shift;
-      const auto is_image = [&](std::uint32_t k) {
-        return fluid.id[foreign_[k]] == id && fluid.position(foreign_[k]) == image;
-      };
-      const std::uint32_t* probe = probe_of(id);
-      while (*probe != none && !is_image(*probe)) probe = next(probe);
-      candidate.image = *probe;
+      candidate.image = table_.find(fluid.id[candidate.particle],
+                                    [&](std::uint32_t k) { return fluid.position(foreign_[k]) == image; });
     }
   }
-  states_.clear(foreign_.size());
-  densities_.clear(foreign_.size());
-}
-
-template <int D>
-std::uint64_t Residents<D>::plan(std::uint64_t step) {
-  if (!staying_ || travelled_ >= skin) return never;  // those who make lists in every step would have all do so
-  constexpr double doubt = 0.1;                       // steps by which the others should not be surprised
-  const double left = (allowance - used()) * steps_ / used();
-  if (left < 0.0)
-    end_ = step;
-  else if (2.0 * used() > allowance)
-    end_ = std::min(end_, step + 1 + static_cast<std::uint64_t>(std::max(0.0, left - doubt)));
-  ending_ = end_ <= step;
-  return end_;
-}
-
-template <int D>
-void Residents<D>::adopt_plan(std::uint64_t step, std::uint64_t plan) {
-  if (!lasts() || plan >= end_) return;
-  const double steps = steps_ + static_cast<double>(plan - step);  // of the stay by then
-  if (steps < worthwhile || 2.0 * used() * steps < allowance * steps_) return;
-  end_ = plan;
-  ending_ = end_ <= step;
 }
 
 template <int D>
 void Residents<D>::select(const FluidParticles<D>& fluid, std::size_t n, std::vector<std::uint32_t>& chosen) const {
   for (const Candidate& candidate : candidates_[n])
     if (is_needed(fluid, n, candidate)) chosen.push_back(candidate.particle);
-}
-
-/// Where the search for an id begins; several images of one PP follow each other.
-template <int D>
-const std::uint32_t* Residents<D>::probe_of(std::uint64_t id) const {
-  return &table_[static_cast<std::size_t>(id * 0x9e3779b97f4a7c15u >> 32) & (table_.size() - 1)];
-}
-
-template <int D>
-const std::uint32_t* Residents<D>::next(const std::uint32_t* probe) const {
-  return ++probe == table_.data() + table_.size() ? table_.data() : probe;
 }
 
 template <int D>
@@ -149,15 +110,12 @@ bool Residents<D>::refresh(FluidParticles<D>& fluid, std::span<BufferReader> rea
   std::fill(up_to_date_.begin() + static_cast<std::ptrdiff_t>(near_), up_to_date_.end(), 0);
   for (std::size_t n = 0; n < needed_.size(); ++n)
     if (needed_[n].image_shift) refresh_images(fluid, n);
-  states_.of_messages.resize(readers.size());
   for (std::size_t n = 0; n < readers.size(); ++n)
-    if (!refresh(fluid, readers[n], states_.of_messages[n])) return false;
-  if (!lasts()) return false;
-  travelled_ += farthest_;
-  farthest_ = 0.0;
+    if (!refresh(fluid, readers[n], n)) return false;
+  if (!schedule_.lasts()) return false;
   for (std::size_t n = 0; n < foreign_.size(); ++n)
     if (up_to_date_[n] == 0 && noticed_.contains(fluid.position(foreign_[n]))) return false;
-  ++steps_;
+  schedule_.add_step();
   for (std::size_t n = 0; n < near_; ++n) owned_[n] = region_.contains(fluid.position(foreign_[n])) ? 1 : 0;
   return true;
 }
@@ -175,8 +133,9 @@ void Residents<D>::refresh_images(FluidParticles<D>& fluid, std::size_t n) {
   }
 }
 
+/// False where a PP comes near that was not here.
 template <int D>
-bool Residents<D>::refresh(FluidParticles<D>& fluid, BufferReader& reader, std::vector<std::uint32_t>& sequence) {
+bool Residents<D>::refresh(FluidParticles<D>& fluid, BufferReader& reader, std::size_t sender) {
   const auto count = reader.get<std::uint64_t>();
   const std::byte* const ids = reader.skip<std::uint64_t>(count);
   const std::byte* const fields = reader.skip<double>(count * FluidParticles<D>::field_count);
@@ -185,42 +144,27 @@ bool Residents<D>::refresh(FluidParticles<D>& fluid, BufferReader& reader, std::
     std::memcpy(&result, fields + (field * count + k) * sizeof result, sizeof result);
     return result;
   };
-  sequence_.assign(count, none);
-  double largest_square = 0.0;  // of displacements, rcut^2
-  std::size_t expected = 0;     // in `sequence`
-  for (std::size_t k = 0; k < count; ++k) {
-    std::uint64_t id;
-    std::memcpy(&id, ids + k * sizeof id, sizeof id);
+  const auto position = [&](std::size_t k) {
     Vec<D, double> x;
     for (int axis = 0; axis < D; ++axis) x[axis] = value(static_cast<std::size_t>(axis), k);
-    double square = 0.0;
-    const auto is_that = [&](std::uint32_t n) {
-      if (fluid.id[foreign_[n]] != id) return false;
-      const Vec<D, double> moved = separation(model_.pair, x - fluid.position(foreign_[n]));
-      square = dot(moved, moved);
-      return square <= skin * skin;  // another image is a box away
-    };
-    std::uint32_t found = expected < sequence.size() ? sequence[expected] : none;
-    if (found == none || !is_that(found)) {
-      const std::uint32_t* probe = probe_of(id);
-      while (*probe != none && !is_that(*probe)) probe = next(probe);
-      found = *probe;
-      if (found == none) {
-        if (noticed_.contains(x)) return false;
-        continue;
-      }
-      expected = states_.stood[found];
-    }
-    largest_square = std::max(largest_square, square);
-    for (std::size_t f = 0; f < fluid.field.size(); ++f) fluid.field[f][foreign_[found]] = value(f, k);
-    up_to_date_[found] = 1;
-    sequence_[k] = found;
-    states_.stood[found] = static_cast<std::uint32_t>(k);
-    ++expected;
-  }
-  farthest_ = std::max(farthest_, std::sqrt(largest_square));
-  sequence.swap(sequence_);
-  return true;
+    return x;
+  };
+  double square = 0.0, largest_square = 0.0;  // of displacements, rcut^2
+  const bool all_known = states_.read(
+      sender, ids, count, table_,
+      [&](std::size_t k, std::uint32_t n) {
+        const Vec<D, double> moved = separation(model_.pair, position(k) - fluid.position(foreign_[n]));
+        square = dot(moved, moved);
+        return square <= skin * skin;  // another image is a box away
+      },
+      [&](std::size_t k, std::uint32_t n) {
+        largest_square = std::max(largest_square, square);
+        for (std::size_t f = 0; f < fluid.field.size(); ++f) fluid.field[f][foreign_[n]] = value(f, k);
+        up_to_date_[n] = 1;
+      },
+      [&](std::size_t k) { return !noticed_.contains(position(k)); });
+  if (all_known) schedule_.ghosts_moved(std::sqrt(largest_square));
+  return all_known;
 }
 
 template <int D>
@@ -234,45 +178,24 @@ void Residents<D>::copy_densities(const FluidParticles<D>& fluid, std::span<doub
 }
 
 template <int D>
-void Residents<D>::take_densities(const FluidParticles<D>& fluid, std::size_t n, BufferReader& reader,
-                                  std::span<double> density) {
+void Residents<D>::take_densities(std::size_t sender, BufferReader& reader, std::span<double> density) {
   const auto count = reader.get<std::uint64_t>();
   const std::byte* const ids = reader.skip<std::uint64_t>(count);
   const std::byte* const values = reader.skip<double>(count);
-  if (densities_.of_messages.size() <= n) densities_.of_messages.resize(n + 1);
-  std::vector<std::uint32_t>& sequence = densities_.of_messages[n];
-  sequence_.assign(count, none);
-  std::size_t expected = 0;  // in `sequence`
-  for (std::size_t k = 0; k < count; ++k) {
-    std::uint64_t id;
-    std::memcpy(&id, ids + k * sizeof id, sizeof id);
-    const auto is_that = [&](std::uint32_t at) { return fluid.id[foreign_[at]] == id; };
-    std::uint32_t found = expected < sequence.size() ? sequence[expected] : none;
-    if (found == none || !is_that(found)) {
-      const std::uint32_t* probe = probe_of(id);
-      while (*probe != none && !is_that(*probe)) probe = next(probe);
-      found = *probe;
-      if (found == none) continue;
-      expected = densities_.stood[found];
-    }
-    double value;
-    std::memcpy(&value, values + k * sizeof value, sizeof value);
-    for (std::uint32_t image = twins_[found];; image = twins_[image]) {
-      density[foreign_[image]] = value;
-      if (image == found) break;
-    }
-    sequence_[k] = found;
-    densities_.stood[found] = static_cast<std::uint32_t>(k);
-    ++expected;
-  }
-  sequence.swap(sequence_);
+  densities_.read(
+      sender, ids, count, table_, [](std::size_t, std::uint32_t) { return true; },
+      [&](std::size_t k, std::uint32_t n) {
+        double value;
+        std::memcpy(&value, values + k * sizeof value, sizeof value);
+        table_.for_each_image(n, [&](std::uint32_t image) { density[foreign_[image]] = value; });
+      },
+      [](std::size_t) { return true; });
 }
 
 template <int D>
 void Residents<D>::leave(FluidParticles<D>& fluid) {
-  if (!staying_) return;
-  staying_ = false;
-  short_stays_ = steps_ < worthwhile ? short_stays_ + 1 : 0;
+  if (!staying()) return;
+  schedule_.end();
   std::vector<std::uint32_t> near_gone, gone;  // in rising order
   for (std::size_t n = 0; n < near_; ++n)
     if (owned_[n] == 0) near_gone.push_back(foreign_[n]);

@@ -195,7 +195,7 @@ double density_of(std::uint64_t solid, std::uint32_t index) {
 template <int D>
 void expect_densities_of_ghosts(const Model<D>& model, Halo<D>& halo, const State<D>& state, Residents<D>& residents,
                                 const std::vector<Solid<D>>& copies) {
-  residents.settle(state.fluid);
+  residents.settle(state.fluid, StayLength::several_steps);
   std::vector<double> density;
   for (std::size_t i = 0; i < state.fluid.size(); ++i)
     density.push_back(halo.region().contains(state.fluid.position(i)) ? density_of(state.fluid.id[i]) : -1.0);
@@ -211,7 +211,7 @@ void expect_densities_of_ghosts(const Model<D>& model, Halo<D>& halo, const Stat
     if (halo.region().contains(fp.place.x))
       set_density(model, fp, density_of(solids.bodies[fp.solid].solid->id, fp.index));
   halo.begin_densities(state.fluid, residents, density, solids);
-  halo.end_densities(state.fluid, residents, density, solids);
+  halo.end_densities(residents, density, solids);
   for (std::size_t i = 0; i < state.fluid.size(); ++i)
     if (halo.reach().contains(state.fluid.position(i))) {
       EXPECT_EQ(density[i], density_of(state.fluid.id[i])) << "particle " << state.fluid.id[i];
