@@ -30,7 +30,7 @@ void measure(benchmark::State& state) {
       setup.sum(pass);
     else
       setup.list(pass);
-    benchmark::DoNotOptimize(pass.sums(0));
+    benchmark::DoNotOptimize(pass.blocks().sums(0));
   }
   const auto rate = [&](std::uint64_t count) {
     return benchmark::Counter(static_cast<double>(count), benchmark::Counter::kIsIterationInvariantRate);

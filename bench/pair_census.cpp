@@ -50,15 +50,15 @@ class Parts {
   [[gnu::noinline]] void lay_out() { lay_blocks(); }
   [[gnu::noinline]] void distances() {
     for (int pass = 0; pass < passes; ++pass)
-      for (const auto& lists : pass_.kept())
+      for (const auto& lists : pass_.lists().all())
         lists.for_each_chunk(numbers_, blocks_.data(), squares_, [](auto, auto) {});
   }
   [[gnu::noinline]] void whole_pass() { sum(); }
 
   Census census() {
     Census found;
-    found.candidates = pass_.measured() * lane_count;  // the search measures to the box of a block
-    for (const auto& lists : pass_.kept()) {
+    found.candidates = pass_.lists().measured() * lane_count;  // the search measures to the box of a block
+    for (const auto& lists : pass_.lists().all()) {
       found.blocks += lists.blocks().size();
       lists.for_each_chunk(numbers_, blocks_.data(), squares_, [&](auto centres, std::size_t base) {
         for (std::size_t n = base; n < centres.back().end; ++n) {

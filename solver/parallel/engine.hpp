@@ -61,14 +61,28 @@ class ParallelEngine final : public Engine<D> {
     const std::uint64_t step = state_.step + 1;
     return options_.faces > 0 && (step % options_.faces == 0 || step == options_.last_step);
   }
-  void sum_densities(bool alone);
+  /// What densities are summed for. Output asks for them in no step: what follows from them is not kept.
+  enum class Purpose { step, output };
+  template <class Pass>
+  void step_with_fluid(Pass& pass);
+  void step_of_solids_alone();
+  void exchange_solids();
+  void step_solids();
   void place_solids();
-  void order_fluid(StayLength length);
-  void close_densities();
-  void sum_forces();
-  void explain_pairs();
+  template <class Pass>
+  auto sum_densities(Pass& pass, Purpose purpose) -> typename Pass::template Sums<Stage::known_densities>;
+  template <class Pass>
+  void list_pairs(Pass& pass, StayLength length);
+  void close_frozen_densities();
+  template <class Numbers>
+  StepSums<D, Numbers, Stage::forces> sum_forces(StepSums<D, Numbers, Stage::known_densities>&& densities);
+  template <class Forces>
+  void explain_pairs(const Forces& forces);
+  template <class Forces>
+  Vec<D, Int128> impulse_received(const Forces& forces) const;
   void find_rows();
-  void move_fluid();
+  template <class Forces>
+  void move_fluid(Forces& forces);
   std::vector<HomeReport<D>> collect_reports();
   void move_solids(const std::vector<HomeReport<D>>& from_others);
 

@@ -91,22 +91,6 @@ std::vector<FaceImpulse<D>> FaceLedger<D>::faces(const FluidParticles<D>& fluid,
   return faces;
 }
 
-template <int D>
-Vec<D, Int128> FaceLedger<D>::received(const FluidParticles<D>& fluid, const ModelPass<D>& pass,
-                                       const std::vector<FrozenInStep<D>>& frozen,
-                                       const std::vector<NeighbourSums<D>>& frozen_sums) const {
-  Vec<D, Int128> sum{};
-  std::visit(
-      [&](const auto& numbered) {
-        for (std::uint32_t i = 0; i < fluid.size(); ++i)
-          if (region_.contains(fluid.position(i))) add(sum, numbered.sums(numbered.slot(i)).impulse, 1);
-      },
-      pass);
-  for (std::size_t k = 0; k < frozen.size(); ++k)
-    if (region_.contains(frozen[k].place.x)) add(sum, frozen_sums[k].impulse, 1);
-  return sum;
-}
-
 template class FaceLedger<2>;
 template class FaceLedger<3>;
 

@@ -10,6 +10,7 @@
 #include <random>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "parallel/residents.hpp"
 #include "unit/serial/scenes.hpp"
@@ -54,43 +55,38 @@ std::vector<std::uint32_t> all_of(const FluidParticles<D>& fluid) {
 }
 
 template <class Pass, int D>
-void sum_densities(Pass& pass, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
-  pass.sum_inner_densities(grid);
-  pass.sum_rest_densities(fluid, grid);
+auto sum_densities(Pass& pass, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
+  return pass.sum_inner_densities(grid).sum_rest(fluid, grid);
 }
 
 /// The passes of a step over PPs that are all owned.
 template <class Pass, int D>
-std::vector<double> sum(Pass& pass, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
-  std::vector<double> density(fluid.size());
-  sum_densities(pass, fluid, grid);
-  pass.close_densities({}, density);
-  pass.sum_inner(grid);
-  pass.sum_rest(grid);
-  return density;
+auto sum(Pass& pass, FluidParticles<D>& fluid, const CellGrid<D>& grid, std::vector<double>& density) {
+  density.resize(fluid.size());
+  return sum_densities(pass, fluid, grid).close({}, density).sum_inner(grid).sum_rest(density, grid);
 }
 
 /// Tells the pass where those that are not foreign have moved to, in lanes where it takes them.
-template <class Pass, int D>
-void tell_of_motion(Pass& pass, const FluidParticles<D>& fluid, const std::vector<std::uint8_t>& foreign) {
+template <class Forces, int D>
+void tell_of_motion(Forces&& forces, const FluidParticles<D>& fluid, const std::vector<std::uint8_t>& foreign) {
   for (std::uint32_t i = 0; i < fluid.size();) {
-    const std::uint32_t slot = pass.slot(i);
+    const std::uint32_t slot = forces.pass().blocks().slot(i);
     const bool lanes = slot % lane_count == 0 && i + lane_count <= fluid.size() &&
-                       pass.slot(i + lane_count - 1) == slot + lane_count - 1;
+                       forces.pass().blocks().slot(i + lane_count - 1) == slot + lane_count - 1;
     if (lanes && std::count(foreign.begin() + i, foreign.begin() + i + lane_count, 0) == lane_count) {
       Vec<D, Lanes> x, v;
       for (int axis = 0; axis < D; ++axis) {
         x[axis] = load_lanes(&fluid.x(axis)[i]);
         v[axis] = load_lanes(&fluid.v(axis)[i]);
       }
-      pass.moved(slot, x, v);
+      forces.moved(slot, x, v);
       i += lane_count;
       continue;
     }
     if (foreign[i] == 0) {
       Vec<D, double> x = fluid.position(i), v;
       for (int axis = 0; axis < D; ++axis) v[axis] = fluid.v(axis)[i];
-      pass.moved(slot, x, v);
+      forces.moved(slot, x, v);
     }
     ++i;
   }
@@ -126,8 +122,8 @@ AllSums sums_over(const Model<2>& model, FluidParticles<2> fluid, double behind,
   FluidPass<2, Numbers> pass(model, 1);
   pass.list(fluid, grid, Region<2>::whole_box(), kind == Lists::once ? 1.0 : reach, all_of(fluid), false);
   AllSums result;
-  result.density = sum(pass, fluid, grid);
-  for (std::uint32_t i = 0; i < fluid.size(); ++i) result.forces.push_back(pass.sums(pass.slot(i)));
+  const auto forces = sum(pass, fluid, grid, result.density);
+  for (std::uint32_t i = 0; i < fluid.size(); ++i) result.forces.push_back(forces.sums(pass.blocks().slot(i)));
   return result;
 }
 
@@ -323,30 +319,29 @@ void expect_sums_of_all_pairs(const Case& test) {
   pass.list(fluid, grid, widened(model, region, 0.5 * (reach - 1.0)), test.kind == Lists::once ? 1.0 : reach, foreign,
             in_parts);
   if (test.kind == Lists::kept_after_motion || in_parts) {
-    sum(pass, fluid, grid);
+    std::vector<double> density;
+    auto forces = sum(pass, fluid, grid, density);
     stir(model, fluid);
-    tell_of_motion(pass, fluid, is_foreign);
+    tell_of_motion(forces, fluid, is_foreign);
   }
   const AllPairs<D, Numbers, Kernel> all(model, fluid);
   std::vector<std::uint32_t> others;
   for (std::uint32_t i = 0; i < fluid.size(); ++i)
     if (!region.contains(fluid.position(i)) && is_foreign[i] != 0) others.push_back(i);
   std::vector<double> density(fluid.size(), -1.0);
-  sum_densities(pass, fluid, grid);
-  pass.close_densities(others, density);
+  auto known = sum_densities(pass, fluid, grid).close(others, density);
   for (const std::uint32_t i : others) ASSERT_EQ(density[i], model.rest_density);
   for (std::uint32_t i = 0; i < fluid.size(); ++i)
     if (region.contains(fluid.position(i))) {
       ASSERT_EQ(density[i], all.density()[i]) << "particle " << i;
     }
-  pass.sum_inner(grid);
+  auto inner = std::move(known).sum_inner(grid);
   for (const std::uint32_t i : others) density[i] = model.rest_density * (0.9 + 0.001 * (i % 200));
-  pass.take_densities(density);
-  pass.sum_rest(grid);
+  const auto forces = std::move(inner).sum_rest(density, grid);
   std::size_t pairs = 0;
   for (std::uint32_t i = 0; i < fluid.size(); ++i) {
     if (!region.contains(fluid.position(i))) continue;
-    const NeighbourSums<D> sums = all.forces(i, density), found = pass.sums(pass.slot(i));
+    const NeighbourSums<D> sums = all.forces(i, density), found = forces.sums(pass.blocks().slot(i));
     ASSERT_EQ(found.impulse, sums.impulse) << "particle " << i;
     ASSERT_EQ(found.shift, sums.shift) << "particle " << i;
     ASSERT_EQ(found.shear, sums.shear) << "particle " << i;
@@ -368,9 +363,10 @@ TEST(FluidPass, leaves_little_for_the_second_part) {
     if (fluid.x(0)[i] > 0.9 * box_quanta) foreign.push_back(i);
   FluidPass<2, DoubleLanes<2>> pass(built.model, 1);
   pass.list(fluid, grid, Region<2>::whole_box(), reach, foreign, true);
-  ASSERT_EQ(pass.kept().size(), 2u);
-  const auto first = static_cast<double>(pass.kept()[0].blocks().size()),
-             second = static_cast<double>(pass.kept()[1].blocks().size());
+  const auto& lists = pass.lists().all();
+  ASSERT_EQ(lists.size(), 2u);
+  const auto first = static_cast<double>(lists[0].blocks().size()),
+             second = static_cast<double>(lists[1].blocks().size());
   EXPECT_GT(first / (first + second), 0.8);
   EXPECT_LT(first / (first + second), 0.9);
 }
@@ -461,9 +457,9 @@ void expect_frozen_sums_of_all_pairs(const std::string& scene, int threads) {
 
   std::vector<std::int64_t> sums;
   std::vector<double> density(fluid.size());
-  sum_densities(pass, fluid, grid);
-  pass.add_frozen_densities(grid, frozen, sums);
-  pass.close_densities({}, density);
+  auto densities = sum_densities(pass, fluid, grid);
+  densities.add_frozen(grid, frozen, sums);
+  auto known = std::move(densities).close({}, density);
   ASSERT_EQ(sums.size(), frozen.size());
   std::vector<double> expected = all.density();
   for (std::size_t k = 0; k < frozen.size(); ++k) {
@@ -483,10 +479,8 @@ void expect_frozen_sums_of_all_pairs(const std::string& scene, int threads) {
     }
 
   std::vector<NeighbourSums<D>> received;
-  pass.take_densities(density);
-  pass.sum_inner(grid);
-  pass.sum_rest(grid);
-  pass.add_frozen(grid, frozen, received);
+  auto forces = std::move(known).sum_inner(grid).sum_rest(density, grid);
+  forces.add_frozen(grid, frozen, received);
   ASSERT_EQ(received.size(), frozen.size());
   std::vector<NeighbourSums<D>> on_fluid(fluid.size(), NeighbourSums<D>{});
   for (std::size_t k = 0; k < frozen.size(); ++k) {
@@ -506,7 +500,7 @@ void expect_frozen_sums_of_all_pairs(const std::string& scene, int threads) {
   }
   for (std::uint32_t i = 0; i < fluid.size(); ++i) {
     if (!region.contains(fluid.position(i))) continue;
-    const NeighbourSums<D> sums_of_fluid = all.forces(i, density), found = pass.sums(pass.slot(i));
+    const NeighbourSums<D> sums_of_fluid = all.forces(i, density), found = forces.sums(pass.blocks().slot(i));
     ASSERT_EQ(found.impulse, sums_of_fluid.impulse + on_fluid[i].impulse) << "particle " << i;
     ASSERT_EQ(found.shift, sums_of_fluid.shift + on_fluid[i].shift) << "particle " << i;
     ASSERT_EQ(found.shear, sums_of_fluid.shear + on_fluid[i].shear) << "particle " << i;
@@ -534,8 +528,8 @@ TEST(FluidPass, names_an_owned_particle_whose_density_is_out_of_range) {
     FluidPass<2, DoubleLanes<2>> pass(built.model, 1);
     pass.list(fluid, grid, Region<2>::whole_box(), 1.0, all_of(fluid), false);
     std::vector<double> density(fluid.size());
-    sum_densities(pass, fluid, grid);
-    return pass.close_densities(others, density);
+    static_cast<void>(sum_densities(pass, fluid, grid).close(others, density));
+    return find_out_of_range(density, built.model.rest_density);
   };
   EXPECT_FALSE(wrong({}).has_value());
   // Eighty-one at one position have 81 W(0), and W(0) is 7 / pi, of a rest density of 12.25.
