@@ -59,7 +59,7 @@ class FluidPass {
   /// lists hold all pairs within rcut as long as no PP has moved by more than half of reach - 1, and none that was
   /// outside the region has come into what this process owns. `fluid` is in the order of `grid`, whose cells are fit to
   /// that reach or a longer one. `foreign`: indices of the PPs that change other than by `moved`. With `apart`, the
-  /// inner sums are of pairs without a foreign PP or a neighbour in its block.
+  /// inner sums are those of PPs that have no foreign one in their block or a block nearby; without it they are empty.
   void list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region, double reach,
             std::span<const std::uint32_t> foreign, bool apart);
   /// Begins the sums of a step over the lists: densities over all PPs near each PP of the region, with the PPs in the

@@ -10,6 +10,7 @@
 #include <random>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "parallel/residents.hpp"
@@ -40,6 +41,19 @@ std::string swirl_in(const std::string& sides) {
   std::string text = swirl;
   return text.replace(text.find(own), own.size(), sides);
 }
+
+/// What may be done at a stage of the sums of a step, and that it uses the stage up.
+template <class Sums>
+concept CanSumInner = requires(Sums sums, const CellGrid<2>& grid) {
+  static_cast<Sums>(sums).sum_inner(grid);
+};
+template <Stage stage>
+using SumsAt = StepSums<2, DoubleLanes<2>, stage>;
+static_assert(CanSumInner<SumsAt<Stage::known_densities>&&>);
+static_assert(!CanSumInner<SumsAt<Stage::known_densities>&>, "it would be summed twice");
+static_assert(!CanSumInner<SumsAt<Stage::densities>&&>, "densities are not known yet");
+static_assert(!CanSumInner<SumsAt<Stage::forces>&&>, "forces are summed already");
+static_assert(!std::is_copy_constructible_v<SumsAt<Stage::densities>>);
 
 /// How a sum comes about: by lists of the step, by lists that are kept, by such after the PPs have moved, or then in
 /// two parts, of which the first must not look at some PPs.
