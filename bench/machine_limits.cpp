@@ -138,10 +138,10 @@ void measure() {
                             {"roots_per_s", roots},
                             {"integer_additions_per_s", integer_additions}};
   Columns nearest(24 << 10), own(512 << 10), memory(384 << 20);
-  const auto add = [&](const std::string& memory, Columns& columns) {
-    limits.push_back({memory + "_load_bytes_per_s", [&columns] { return columns.load(); }});
-    limits.push_back({memory + "_store_bytes_per_s", [&columns] { return columns.store(); }});
-    limits.push_back({memory + "_triad_bytes_per_s", [&columns] { return columns.triad(); }});
+  const auto add = [&](const std::string& level, Columns& columns) {
+    limits.push_back({level + "_load_bytes_per_s", [&columns] { return columns.load(); }});
+    limits.push_back({level + "_store_bytes_per_s", [&columns] { return columns.store(); }});
+    limits.push_back({level + "_triad_bytes_per_s", [&columns] { return columns.triad(); }});
   };
   add("l1", nearest);
   add("l2", own);
