@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "base/lanes.hpp"
+#include "base/numbers.hpp"
 
 namespace mappm::bench {
 
@@ -38,12 +38,12 @@ class Counted {
     return a.with(b, a.value_ / b.value_, &Operations::roots);
   }
   friend Counted to_fixed_with_excess(const Counted& x) { return x.with(x, x.value_, &Operations::additions); }
-  friend Counted square_root(const Counted& x) { return x.with(x, std::sqrt(x.value_), &Operations::roots); }
+  static Counted square_root(const Counted& x) { return x.with(x, std::sqrt(x.value_), &Operations::roots); }
   /// Where additions are made.
-  friend Counted larger(const Counted& a, const Counted& b) {
+  static Counted larger(const Counted& a, const Counted& b) {
     return a.with(b, std::fmax(a.value_, b.value_), &Operations::additions);
   }
-  friend Counted smaller(const Counted& a, const Counted& b) {
+  static Counted smaller(const Counted& a, const Counted& b) {
     return a.with(b, std::fmin(a.value_, b.value_), &Operations::additions);
   }
 
@@ -62,6 +62,10 @@ class Counted {
 }  // namespace mappm::bench
 
 template <>
-struct mappm::ScalarOf<mappm::bench::Counted> {
-  using Type = double;
+struct mappm::NumberType<mappm::bench::Counted> {
+  using Number = bench::Counted;
+  using Scalar = double;
+  static Number square_root(const Number& x) { return Number::square_root(x); }
+  static Number larger(const Number& a, const Number& b) { return Number::larger(a, b); }
+  static Number smaller(const Number& a, const Number& b) { return Number::smaller(a, b); }
 };

@@ -30,7 +30,7 @@ void measure(benchmark::State& state) {
       setup.sum(pass);
     else
       setup.list(pass);
-    benchmark::DoNotOptimize(pass.sums(0));
+    benchmark::DoNotOptimize(pass.blocks().sums(0));
   }
   const auto rate = [&](std::uint64_t count) {
     return benchmark::Counter(static_cast<double>(count), benchmark::Counter::kIsIterationInvariantRate);
@@ -46,12 +46,12 @@ void with_cells(benchmark::internal::Benchmark* benchmark) {
       ->Unit(benchmark::kMillisecond);
 }
 
-BENCHMARK(measure<2, DoublePairs<2>, Work::pass>)->Name("pass_2d_39_neighbours")->Apply(with_cells<2>);
-BENCHMARK(measure<3, DoublePairs<3>, Work::pass>)->Name("pass_3d_77_neighbours")->Apply(with_cells<3>);
-BENCHMARK(measure<2, SinglePairs<2>, Work::pass>)->Name("pass_2d_39_neighbours_single")->Apply(with_cells<2>);
-BENCHMARK(measure<3, SinglePairs<3>, Work::pass>)->Name("pass_3d_77_neighbours_single")->Apply(with_cells<3>);
-BENCHMARK(measure<2, DoublePairs<2>, Work::search>)->Name("search_2d_39_neighbours")->Apply(with_cells<2>);
-BENCHMARK(measure<3, DoublePairs<3>, Work::search>)->Name("search_3d_77_neighbours")->Apply(with_cells<3>);
+BENCHMARK(measure<2, DoubleLanes<2>, Work::pass>)->Name("pass_2d_39_neighbours")->Apply(with_cells<2>);
+BENCHMARK(measure<3, DoubleLanes<3>, Work::pass>)->Name("pass_3d_77_neighbours")->Apply(with_cells<3>);
+BENCHMARK(measure<2, SingleLanes<2>, Work::pass>)->Name("pass_2d_39_neighbours_single")->Apply(with_cells<2>);
+BENCHMARK(measure<3, SingleLanes<3>, Work::pass>)->Name("pass_3d_77_neighbours_single")->Apply(with_cells<3>);
+BENCHMARK(measure<2, DoubleLanes<2>, Work::search>)->Name("search_2d_39_neighbours")->Apply(with_cells<2>);
+BENCHMARK(measure<3, DoubleLanes<3>, Work::search>)->Name("search_3d_77_neighbours")->Apply(with_cells<3>);
 
 }  // namespace
 }  // namespace mappm

@@ -9,7 +9,7 @@
 
 #include "base/column.hpp"
 #include "base/lanes.hpp"
-#include "stopwatch.hpp"
+#include "timing.hpp"
 
 namespace mappm {
 namespace {
@@ -138,10 +138,10 @@ void measure() {
                             {"roots_per_s", roots},
                             {"integer_additions_per_s", integer_additions}};
   Columns nearest(24 << 10), own(512 << 10), memory(384 << 20);
-  const auto add = [&](const std::string& place, Columns& columns) {
-    limits.push_back({place + "_load_bytes_per_s", [&columns] { return columns.load(); }});
-    limits.push_back({place + "_store_bytes_per_s", [&columns] { return columns.store(); }});
-    limits.push_back({place + "_triad_bytes_per_s", [&columns] { return columns.triad(); }});
+  const auto add = [&](const std::string& level, Columns& columns) {
+    limits.push_back({level + "_load_bytes_per_s", [&columns] { return columns.load(); }});
+    limits.push_back({level + "_store_bytes_per_s", [&columns] { return columns.store(); }});
+    limits.push_back({level + "_triad_bytes_per_s", [&columns] { return columns.triad(); }});
   };
   add("l1", nearest);
   add("l2", own);

@@ -16,7 +16,7 @@
 #include "counted.hpp"
 #include "parallel/fluid_pass.hpp"
 #include "sorted_fluid.hpp"
-#include "stopwatch.hpp"
+#include "timing.hpp"
 
 namespace mappm {
 using bench::Counted, bench::Operations, bench::SortedFluid;
@@ -33,7 +33,7 @@ struct Census {
 /// The parts of the passes of a step, each by itself. None is inlined, so that a tool can tell them apart.
 template <int D>
 class Parts {
-  using Pass = FluidPass<D, DoublePairs<D>>;
+  using Pass = FluidPass<D, DoubleLanes<D>>;
 
  public:
   explicit Parts(std::uint64_t side)
@@ -50,15 +50,15 @@ class Parts {
   [[gnu::noinline]] void lay_out() { lay_blocks(); }
   [[gnu::noinline]] void distances() {
     for (int pass = 0; pass < passes; ++pass)
-      for (const auto& lists : pass_.kept())
+      for (const auto& lists : pass_.lists().all())
         lists.for_each_chunk(numbers_, blocks_.data(), squares_, [](auto, auto) {});
   }
   [[gnu::noinline]] void whole_pass() { sum(); }
 
   Census census() {
     Census found;
-    found.candidates = pass_.measured() * lane_count;  // the search measures to the box of a block
-    for (const auto& lists : pass_.kept()) {
+    found.candidates = pass_.lists().measured() * lane_count;  // the search measures to the box of a block
+    for (const auto& lists : pass_.lists().all()) {
       found.blocks += lists.blocks().size();
       lists.for_each_chunk(numbers_, blocks_.data(), squares_, [&](auto centres, std::size_t base) {
         for (std::size_t n = base; n < centres.back().end; ++n) {
@@ -81,9 +81,9 @@ class Parts {
   void sum() { setup_.sum(pass_); }
 
   SortedFluid<D> setup_;
-  DoublePairs<D> numbers_;
+  DoubleLanes<D> numbers_;
   Pass pass_;
-  PairBlocks<D, DoublePairs<D>> blocks_;
+  PairBlocks<D, DoubleLanes<D>> blocks_;
   Column<double> squares_;
 };
 
@@ -119,7 +119,7 @@ BlockWork work_of_pairs(const Model<D>& model) {
   BlockWork work;
   Operations& operations = work.operations;
   with_pair_law(model, [&]<class Kernel, bool transport>(Kernel, std::bool_constant<transport>) {
-    using Rounding = typename DoublePairs<D>::ListRounding;
+    using Rounding = typename DoubleLanes<D>::ListRounding;
     constexpr int components = transport ? 2 * D + 2 : D;  // impulse, shift, shear, agitation
     pair_density<Kernel, Rounding, D>(model.pair, cut_distance(Counted::of_lanes(0.25, operations)));
     const Counted q = cut_distance(Counted::of_lanes(0.25, operations));
@@ -153,7 +153,7 @@ class Report {
     ratio("candidates_inside", pairs / static_cast<double>(census.candidates));
     ratio("blocks_within_cutoff", static_cast<double>(census.near_blocks) / blocks);
     ratio("lanes_used", pairs / blocks / lane_count);
-    constexpr double block = sizeof(PairBlock<D, DoublePairs<D>>) / lane_count, state = 8.0 * 2 * D;
+    constexpr double block = sizeof(PairBlock<D, DoubleLanes<D>>) / lane_count, state = 8.0 * 2 * D;
     const double lists = 4.0 * blocks / owned + 8.0;
     figure("bytes_per_particle_block", block);
     figure("bytes_per_particle_lists", lists);

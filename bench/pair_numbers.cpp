@@ -13,7 +13,7 @@
 #include "parallel/fluid_pass.hpp"
 #include "sorted_fluid.hpp"
 #ifdef MAPPM_FLOATING_SUMS
-#include "parallel/floating_pairs.hpp"
+#include "parallel/floating_lanes.hpp"
 #endif
 
 namespace mappm {
@@ -58,11 +58,11 @@ class Ratio {
 template <int D>
 void measure(const std::string& name, std::uint64_t side) {
   bench::SortedFluid<D> fluid(side);
-  Timed<D, DoublePairs<D>> exact(fluid);
-  Timed<D, SinglePairs<D>> single(fluid);
+  Timed<D, DoubleLanes<D>> exact(fluid);
+  Timed<D, SingleLanes<D>> single(fluid);
   Ratio single_ratio;
 #ifdef MAPPM_FLOATING_SUMS
-  Timed<D, FloatingPairs<D>> floating(fluid);
+  Timed<D, FloatingLanes<D>> floating(fluid);
   Ratio floating_ratio;
 #endif
   for (int round = 0; round < rounds; ++round) {

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <vector>
 
+#include "base/stopwatch.hpp"
 #include "parallel/communicator.hpp"
 
 namespace {
@@ -21,9 +21,7 @@ double exchange_seconds(const mappm::Communicator& world, std::size_t bytes, int
   for (int repeat = 0; repeat < repeats; ++repeat) {
     out[0].assign(bytes, std::byte{1});
     world.barrier();
-    const auto start = std::chrono::steady_clock::now();
-    world.exchange(partners, out, in);
-    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    seconds.push_back(mappm::seconds_of([&] { world.exchange(partners, out, in); }));
   }
   std::nth_element(seconds.begin(), seconds.begin() + repeats / 2, seconds.end());
   return seconds[static_cast<std::size_t>(repeats) / 2];

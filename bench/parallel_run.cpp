@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <span>
@@ -16,19 +15,16 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "disordered_fluid.hpp"
 #include "parallel/engine.hpp"
 #include "serial/engine.hpp"
-#include "stopwatch.hpp"
+#include "timing.hpp"
 
 namespace mappm {
 namespace {
 
 constexpr int repeats = 7, steps_a_repeat = 15, first_steps = 10;
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Largest resident set of this process since `reset_peak`, bytes.
 double peak_bytes() {
@@ -76,9 +72,10 @@ double step_seconds(const Communicator& world, Engine& engine, int count, int st
   std::vector<double> seconds;
   for (int repeat = 0; repeat < count; ++repeat) {
     world.barrier();
-    const double start = seconds_now();
-    for (int step = 0; step < steps; ++step) engine.step();
-    double taken = (seconds_now() - start) / steps;
+    double taken = seconds_of([&] {
+                     for (int step = 0; step < steps; ++step) engine.step();
+                   }) /
+                   steps;
     world.maximum(std::span(&taken, 1));
     seconds.push_back(taken);
   }

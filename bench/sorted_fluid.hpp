@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "disordered_fluid.hpp"
@@ -50,20 +51,9 @@ struct SortedFluid {
   /// Both passes, of densities and of forces, as if all PPs were owned.
   template <class Pass>
   void sum(Pass& pass) {
-    sum_densities(pass);
-    sum_forces(pass);
-  }
-  template <class Pass>
-  void sum_densities(Pass& pass) {
     density.resize(particles.size());
-    pass.sum_inner_densities(grid);
-    pass.sum_rest_densities(particles, grid);
-    pass.close_densities({}, density);
-  }
-  template <class Pass>
-  void sum_forces(Pass& pass) {
-    pass.sum_inner(grid);
-    pass.sum_rest(grid);
+    auto known = pass.sum_inner_densities(grid).sum_rest(particles, grid).close({}, density);
+    static_cast<void>(std::move(known).sum_inner(grid).sum_rest(density, grid));
   }
 
  private:

@@ -12,6 +12,7 @@
 #include "app/memory.hpp"
 #include "app/run_loop.hpp"
 #include "app/setup_notice.hpp"
+#include "app/signals.hpp"
 #include "parallel/communicator.hpp"
 #include "parallel/domains.hpp"
 #include "parallel/engine.hpp"
@@ -67,7 +68,15 @@ void run_scene(const Scene& scene, const RunOptions& options, const DomainOption
   engine_options.last_step = last_step(scene, built.model, options);
   ParallelEngine<D> engine(built.model, domains, communicator, std::move(start.state), engine_options);
 
-  RunSetup<D> setup{scene, built.model, communicator, options, start, built.limits, "mappm", built.warnings};
+  RunSetup<D> setup{.scene = scene,
+                    .model = built.model,
+                    .group = communicator,
+                    .options = options,
+                    .start = start,
+                    .limits = built.limits,
+                    .program = "mappm",
+                    .instruction_set = instruction_set,
+                    .warnings = built.warnings};
   setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
   setup.memory = need.text();
   setup.program_options = domain_options.repeated();
@@ -76,7 +85,7 @@ void run_scene(const Scene& scene, const RunOptions& options, const DomainOption
   setup.threads = domain_options.engine.threads;
   setup.faces = domain_options.faces;
   notice.end();
-  RunLoop<D, ParallelEngine<D>>(setup, engine).run();
+  run_loop<D>(setup, engine);
 }
 
 }  // namespace
@@ -106,8 +115,7 @@ int main(int argc, char** argv) try {
     std::string text;  // read once: a pipe gives it to one process alone
     on_first(communicator, [&] { text = scene_file_text(options.scene); });
     text = communicator.broadcast(text, 0);
-    const Scene scene =
-        together(communicator, [&] { return read_scene_text(text, options.scene, options.overrides); });
+    const Scene scene = together(communicator, [&] { return read_scene_text(text, options.scene, options.overrides); });
     if (scene.dimension == 2)
       run_scene<2>(scene, options, domain_options, communicator, notice);
     else

@@ -6,9 +6,11 @@
 #include <utility>
 
 #include "app/command.hpp"
+#include "app/instruction_set.hpp"
 #include "app/memory.hpp"
 #include "app/run_loop.hpp"
 #include "app/setup_notice.hpp"
+#include "app/signals.hpp"
 #include "base/single_group.hpp"
 #include "scene/reader.hpp"
 #include "serial/engine.hpp"
@@ -31,12 +33,20 @@ void run_scene(const Scene& scene, const RunOptions& options, Neighbours neighbo
   Start<D> start = start_run<D>(scene, built.model, Region<D>::whole_box(), options, group);
   SerialEngine<D> engine(built.model, std::move(start.state), neighbours);
 
-  RunSetup<D> setup{scene, built.model, group, options, start, built.limits, "mappm-reference", built.warnings};
+  RunSetup<D> setup{.scene = scene,
+                    .model = built.model,
+                    .group = group,
+                    .options = options,
+                    .start = start,
+                    .limits = built.limits,
+                    .program = "mappm-reference",
+                    .instruction_set = instruction_set,
+                    .warnings = built.warnings};
   setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
   setup.memory = need.text();
   if (neighbours == Neighbours::all_pairs) setup.program_options = " --neighbours all-pairs";
   notice.end();
-  RunLoop<D, SerialEngine<D>>(setup, engine).run();
+  run_loop<D>(setup, engine);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ class Poll {
   /// RangeError, on all processes with the text of the first fault of all.
   bool agree_to_stop(std::uint64_t step, double seconds_per_step, const FirstFault& fault) {
     const double wished = seconds_per_step > 0.0 ? longest_wait / seconds_per_step : 1.0;
-    const double fault_step = fault.any() ? static_cast<double>(fault.place().step) : never;
+    const double fault_step = fault.any() ? static_cast<double>(fault.origin().step) : never;
     std::array<double, 5> lowest{fault_step, stop_requested() ? 0.0 : 1.0, std::clamp(wished, 1.0, most_steps),
                                  warned_ ? never : overlaps_.doubtful.step, overlaps_.last.step};
     group_.minimum(lowest);
@@ -60,8 +60,8 @@ class Poll {
 
   std::string text_of_first(const FirstFault& mine) const {
     std::array<double, 4> key{never, never, never, never};
-    const std::array<std::uint64_t, 4> place = mine.place().key();
-    if (mine.any()) std::copy(place.begin(), place.end(), key.begin());
+    const std::array<std::uint64_t, 4> origin = mine.origin().key();
+    if (mine.any()) std::copy(origin.begin(), origin.end(), key.begin());
     return text_of_first(key, mine.text());
   }
 

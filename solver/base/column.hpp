@@ -10,7 +10,7 @@
 namespace mappm {
 
 /// Memory whose first byte lies in another line of the cache for each array. Large arrays from the system all start at
-/// the same place of a page; where a loop walks along a dozen of them, their lines would compete for the few ways of
+/// the same offset in a page; where a loop walks along a dozen of them, their lines would compete for the few ways of
 /// one set of the cache, and a store would look like that of a load beside it.
 template <class T>
 struct SpreadAllocator {

@@ -14,10 +14,7 @@
 #include <immintrin.h>
 #endif
 
-#include "base/fixed_point.hpp"
-
-/// The pair law runs a billion times a minute: its small functions must not be called, and compilers do not always see.
-#define MAPPM_INLINE [[gnu::always_inline]] inline
+#include "base/numbers.hpp"
 
 namespace mappm {
 
@@ -67,57 +64,20 @@ MAPPM_INLINE Int32Lanes to_fixed(const FloatLanes& x) {
 #endif
 }
 
-/// The number that each lane of a type holds: the type itself where that is one number.
-template <class Real>
-struct ScalarOf {
-  using Type = Real;
+template <class T, class Abi>
+struct NumberType<Simd<T, Abi>> {
+  using Number = Simd<T, Abi>;
+  using Scalar = T;
+  MAPPM_INLINE static Number square_root(const Number& x) { return std::experimental::sqrt(x); }
+  MAPPM_INLINE static Number larger(const Number& a, const Number& b) { return std::experimental::max(a, b); }
+  MAPPM_INLINE static Number smaller(const Number& a, const Number& b) { return std::experimental::min(a, b); }
+  MAPPM_INLINE static Number magnitude(const Number& x) { return std::experimental::abs(x); }
+  MAPPM_INLINE static auto nearest_fixed(const Number& x) { return to_fixed(x); }
+  template <class U>
+  MAPPM_INLINE static auto converted(const Number& x) {
+    return std::experimental::static_simd_cast<std::experimental::rebind_simd_t<U, Number>>(x);
+  }
 };
-template <class T, class Abi>
-struct ScalarOf<Simd<T, Abi>> {
-  using Type = T;
-};
-template <class Real>
-using Scalar = typename ScalarOf<Real>::Type;
-
-/// A constant of a law in a number type.
-template <class Real>
-MAPPM_INLINE Real constant(double value) {
-  return Real(static_cast<Scalar<Real>>(value));
-}
-
-template <std::floating_point Real>
-MAPPM_INLINE Real square_root(Real x) {
-  return std::sqrt(x);
-}
-template <class T, class Abi>
-MAPPM_INLINE Simd<T, Abi> square_root(const Simd<T, Abi>& x) {
-  return std::experimental::sqrt(x);
-}
-
-template <std::floating_point Real>
-MAPPM_INLINE Real larger(Real a, Real b) {
-  return a < b ? b : a;
-}
-template <class T, class Abi>
-MAPPM_INLINE Simd<T, Abi> larger(const Simd<T, Abi>& a, const Simd<T, Abi>& b) {
-  return std::experimental::max(a, b);
-}
-
-template <std::floating_point Real>
-MAPPM_INLINE Real smaller(Real a, Real b) {
-  return b < a ? b : a;
-}
-template <class T, class Abi>
-MAPPM_INLINE Simd<T, Abi> smaller(const Simd<T, Abi>& a, const Simd<T, Abi>& b) {
-  return std::experimental::min(a, b);
-}
-
-MAPPM_INLINE double magnitude(double x) { return std::fabs(x); }
-MAPPM_INLINE Lanes magnitude(const Lanes& x) { return std::experimental::abs(x); }
-
-/// An integer as a real number: exact below 2^53, else rounded to nearest.
-MAPPM_INLINE double real_of(std::int64_t x) { return static_cast<double>(x); }
-MAPPM_INLINE Lanes real_of(const IntLanes& x) { return std::experimental::static_simd_cast<Lanes>(x); }
 
 /// As many numbers as a register holds.
 template <class T>
@@ -137,14 +97,6 @@ MAPPM_INLINE auto load_as_many(const T* from) {
   return std::experimental::rebind_simd_t<T, Lanes>(from, std::experimental::element_aligned);
 }
 
-/// Each number in another type: rounded to nearest, cut to its whole part, or to its low bits.
-template <class T, class U>
-requires std::is_arithmetic_v<U> MAPPM_INLINE T lanes_of(U lane) { return static_cast<T>(lane); }
-template <class T, class U, class Abi>
-MAPPM_INLINE auto lanes_of(const Simd<U, Abi>& lanes) {
-  return std::experimental::static_simd_cast<std::experimental::rebind_simd_t<T, Simd<U, Abi>>>(lanes);
-}
-
 /// The type in which sums of a type are modulo a power of two, as its own need not be.
 template <class T>
 struct WrappingOf {
@@ -159,7 +111,7 @@ using Wrapping = typename WrappingOf<T>::Type;
 
 /// Modulo 2^32.
 MAPPM_INLINE Int32Lanes wrapped_difference(const Int32Lanes& a, const Int32Lanes& b) {
-  return lanes_of<std::int32_t>(lanes_of<std::uint32_t>(a) - lanes_of<std::uint32_t>(b));
+  return converted<std::int32_t>(converted<std::uint32_t>(a) - converted<std::uint32_t>(b));
 }
 
 /// 0, 1, 2, ...
@@ -170,7 +122,7 @@ MAPPM_INLINE Vector lane_numbers() {
 
 /// The whole parts of non-negative numbers, or of numbers above -1.
 MAPPM_INLINE void whole_numbers(const Lanes& lanes, std::int32_t* to) {
-  store_lanes(lanes_of<std::int32_t>(lanes), to);
+  store_lanes(converted<std::int32_t>(lanes), to);
 }
 
 template <class T, class Abi>
@@ -223,27 +175,5 @@ MAPPM_INLINE std::uint32_t store_chosen(const Lanes::mask_type& chosen, const st
   return count;
 #endif
 }
-
-/// The integer type that belongs to a number type.
-template <class Real>
-struct FixedOf;
-template <>
-struct FixedOf<double> {
-  using Type = std::int64_t;
-};
-template <>
-struct FixedOf<float> {
-  using Type = std::int32_t;
-};
-template <>
-struct FixedOf<Lanes> {
-  using Type = IntLanes;
-};
-template <>
-struct FixedOf<FloatLanes> {
-  using Type = Int32Lanes;
-};
-template <class Real>
-using Fixed = typename FixedOf<Real>::Type;
 
 }  // namespace mappm

@@ -25,19 +25,19 @@ std::map<std::string, std::string> entries_of(const std::string& identity) {
   return entries;
 }
 
-/// Where it is long, the part about the place at which it differs.
-std::string shortened(const std::string& value, std::size_t place) {
+/// Where it is long, the part about the letter at which it differs.
+std::string shortened(const std::string& value, std::size_t at) {
   if (value.size() <= most_letters) return value;
-  const std::size_t begin = place > most_letters / 2 ? place - most_letters / 2 : 0;
+  const std::size_t begin = at > most_letters / 2 ? at - most_letters / 2 : 0;
   const bool ends = begin + most_letters >= value.size();
   return (begin > 0 ? "..." : "") + value.substr(begin, most_letters) + (ends ? "" : "...");
 }
 
 std::string difference_text(const std::string& key, const std::string& here, const std::string& there,
                             const std::string& where) {
-  const auto place = static_cast<std::size_t>(
-      std::mismatch(here.begin(), here.end(), there.begin(), there.end()).first - here.begin());
-  return fmt::format("{} = {} here and {} in {}", key, shortened(here, place), shortened(there, place), where);
+  const auto at = static_cast<std::size_t>(std::mismatch(here.begin(), here.end(), there.begin(), there.end()).first -
+                                           here.begin());
+  return fmt::format("{} = {} here and {} in {}", key, shortened(here, at), shortened(there, at), where);
 }
 
 }  // namespace
@@ -48,17 +48,17 @@ std::uint64_t text_hash(const std::string& text) {
   return hash.value();
 }
 
-std::string first_difference(const std::string& here, const std::string& there, const std::string& place) {
+std::string first_difference(const std::string& here, const std::string& there, const std::string& where) {
   const auto ours = entries_of(here), theirs = entries_of(there);
   for (const auto& [key, value] : ours) {
     const auto other = theirs.find(key);
     if (other == theirs.end()) continue;
-    if (other->second != value) return difference_text(key, value, other->second, place);
+    if (other->second != value) return difference_text(key, value, other->second, where);
   }
   for (const auto& [key, value] : ours)
-    if (!theirs.contains(key)) return difference_text(key, value, not_given, place);
+    if (!theirs.contains(key)) return difference_text(key, value, not_given, where);
   for (const auto& [key, value] : theirs)
-    if (!ours.contains(key)) return difference_text(key, not_given, value, place);
+    if (!ours.contains(key)) return difference_text(key, not_given, value, where);
   return "";
 }
 

@@ -11,8 +11,8 @@ namespace mappm {
 std::uint64_t text_hash(const std::string& text);
 
 /// The first key that two identities, lines "key = value" sorted by key, do not share, with its value here and there,
-/// or "not given"; empty where they are equal. `place`: where the second one stands, in words.
+/// or "not given"; empty where they are equal. `where`: where the second one stands, in words.
 std::string first_difference(const std::string& here, const std::string& there,
-                             const std::string& place = "the checkpoint");
+                             const std::string& where = "the checkpoint");
 
 }  // namespace mappm

@@ -27,20 +27,20 @@ void append_triple(std::vector<double>& to, const Vec<D, double>& value) {
 
 /// Position in scene units of position quanta that may lie outside the box.
 template <int D>
-Vec<D, double> place_in_scene(const Model<D>& model, const Vec<D, double>& x) {
-  Vec<D, double> place;
+Vec<D, double> position_in_scene(const Model<D>& model, const Vec<D, double>& x) {
+  Vec<D, double> position;
   for (int axis = 0; axis < D; ++axis)
-    place[axis] = wrap_position(x[axis]) * model.pair.length[axis] * model.units.length;
-  return place;
+    position[axis] = wrap_position(x[axis]) * model.pair.length[axis] * model.units.length;
+  return position;
 }
 
 struct FluidPoints {
-  std::vector<double> place, velocity, density, pressure;
+  std::vector<double> position, velocity, density, pressure;
   std::vector<std::int64_t> id, solid;
   std::vector<std::uint8_t> kind;
 
   void reserve(std::size_t count) {
-    for (auto* values : {&place, &velocity}) values->reserve(3 * count);
+    for (auto* values : {&position, &velocity}) values->reserve(3 * count);
     for (auto* values : {&density, &pressure}) values->reserve(count);
     for (auto* values : {&id, &solid}) values->reserve(count);
     kind.reserve(count);
@@ -53,7 +53,7 @@ void add_point(const Model<D>& model, const Vec<D, double>& x, const Vec<D, doub
   const UnitScale& scale = model.units;
   double density_scale = scale.mass;
   for (int axis = 0; axis < D; ++axis) density_scale /= scale.length;
-  append_triple(points.place, place_in_scene(model, x));
+  append_triple(points.position, position_in_scene(model, x));
   append_triple(points.velocity, scale.velocity * v);
   points.density.push_back(density * density_scale);
   points.pressure.push_back(pressure(density, model.rest_density, 1.0, model.background) * density_scale *
@@ -86,7 +86,7 @@ FluidPoints fluid_points(const Model<D>& model, const Sample<D>& sample) {
 }
 
 struct SolidPoints {
-  std::vector<double> place, radius, velocity, angular_velocity, drag;
+  std::vector<double> position, radius, velocity, angular_velocity, drag;
   std::vector<std::int64_t> id;
 };
 
@@ -103,7 +103,7 @@ SolidPoints solid_points(const Model<D>& model, const State<D>& state, std::uint
       const Vec<D, double> offset = rotate(solid.orientation, ball.offset);
       Vec<D, double> centre;
       for (int axis = 0; axis < D; ++axis) centre[axis] = solid.x[axis] + offset[axis] / model.pair.length[axis];
-      append_triple(points.place, place_in_scene(model, centre));
+      append_triple(points.position, position_in_scene(model, centre));
       points.radius.push_back(ball.radius * scale.length);
       append_triple(points.velocity, scale.velocity * velocity.linear);
       for (int axis = D == 2 ? 0 : 2; axis < 2; ++axis) points.angular_velocity.push_back(0.0);
@@ -119,18 +119,18 @@ SolidPoints solid_points(const Model<D>& model, const State<D>& state, std::uint
 /// A VTKHDF file of points, one vertex cell each; point data follow.
 class PointFile {
  public:
-  PointFile(const std::filesystem::path& path, const std::vector<double>& places, double time, std::uint64_t step,
+  PointFile(const std::filesystem::path& path, const std::vector<double>& positions, double time, std::uint64_t step,
             const Group& group)
       : path_(path), group_(group), file_(partial_name(path).string(), group) {
     file_.make_group("VTKHDF");
     file_.attribute("VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
     file_.text_attribute("VTKHDF", "Type", "UnstructuredGrid");
-    const std::uint64_t mine = places.size() / 3;
+    const std::uint64_t mine = positions.size() / 3;
     const std::uint64_t before = group.sum_before(mine);
     const std::vector<std::uint64_t> all = counted(mine);
     for (const char* count : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"})
       file_.rows(std::string("VTKHDF/") + count, once(static_cast<std::int64_t>(all[0])), 0);
-    file_.rows("VTKHDF/Points", places, 3);
+    file_.rows("VTKHDF/Points", positions, 3);
     std::vector<std::int64_t> index(mine);
     for (std::uint64_t i = 0; i < mine; ++i) index[i] = static_cast<std::int64_t>(before + i);
     file_.rows("VTKHDF/Connectivity", index, 0);
@@ -196,7 +196,7 @@ void write_snapshot(const std::filesystem::path& folder, const Model<D>& model, 
   const SnapshotPaths paths(folder, state.step);
   write_points(paths.fluid, group, [&] {
     const FluidPoints points = fluid_points(model, sample);
-    PointFile file(paths.fluid, points.place, time, state.step, group);
+    PointFile file(paths.fluid, points.position, time, state.step, group);
     file.point_data("velocity", points.velocity, 3);
     file.point_data("density", points.density, 0);
     file.point_data("pressure", points.pressure, 0);
@@ -211,7 +211,7 @@ void write_snapshot(const std::filesystem::path& folder, const Model<D>& model, 
   if (!any_sp) return;
   write_points(paths.solids, group, [&] {
     const SolidPoints points = solid_points(model, state, sampled_step);
-    PointFile file(paths.solids, points.place, time, state.step, group);
+    PointFile file(paths.solids, points.position, time, state.step, group);
     file.point_data("radius", points.radius, 0);
     file.point_data("velocity", points.velocity, 3);
     file.point_data("angular_velocity", points.angular_velocity, 3);

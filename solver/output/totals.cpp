@@ -31,13 +31,13 @@ void visit_sums(Totals<D>& totals, Visit&& visit) {
   visit(totals.digest_sum);
 }
 
-/// Place relative to the middle of the box, rcut; the same for a particle and its periodic images.
+/// Position relative to the middle of the box, rcut; the same for a particle and its periodic images.
 template <int D>
 Vec<D, double> from_middle(const Model<D>& model, const Vec<D, double>& x) {
-  Vec<D, double> place;
+  Vec<D, double> position;
   for (int axis = 0; axis < D; ++axis)
-    place[axis] = (wrap_position(x[axis]) - 0.5 * box_quanta) * model.pair.length[axis];
-  return place;
+    position[axis] = (wrap_position(x[axis]) - 0.5 * box_quanta) * model.pair.length[axis];
+  return position;
 }
 
 /// Angular momentum about the middle of the box of a momentum (PP mass c) at x.

@@ -100,26 +100,26 @@ int Domains<D>::count() const {
 }
 
 template <int D>
-Vec<D, int> Domains<D>::place(int rank) const {
-  Vec<D, int> place;
+Vec<D, int> Domains<D>::coordinates(int rank) const {
+  Vec<D, int> coordinates;
   for (int axis = 0; axis < D; ++axis) {
-    place[axis] = rank % grid()[axis];
+    coordinates[axis] = rank % grid()[axis];
     rank /= grid()[axis];
   }
-  return place;
+  return coordinates;
 }
 
 template <int D>
-int Domains<D>::rank_at(const Vec<D, int>& place) const {
+int Domains<D>::rank_at(const Vec<D, int>& coordinates) const {
   int rank = 0;
-  for (int axis = D - 1; axis >= 0; --axis) rank = rank * grid()[axis] + place[axis];
+  for (int axis = D - 1; axis >= 0; --axis) rank = rank * grid()[axis] + coordinates[axis];
   return rank;
 }
 
 template <int D>
 Region<D> Domains<D>::region(int rank) const {
   Region<D> region;
-  const Vec<D, int> at = place(rank);
+  const Vec<D, int> at = coordinates(rank);
   for (int axis = 0; axis < D; ++axis) {
     const auto& cuts = cuts_[static_cast<std::size_t>(axis)];
     region.low[axis] = cuts[static_cast<std::size_t>(at[axis])];
@@ -144,7 +144,7 @@ std::vector<int> Domains<D>::partners(int rank) const {
   std::vector<int> ranks;
   for (int n = 0; n < offset_count<D>; ++n) {
     if (neighbour_offset<D>(n) == Vec<D, int>{}) continue;
-    Vec<D, int> at = place(rank) + neighbour_offset<D>(n);
+    Vec<D, int> at = coordinates(rank) + neighbour_offset<D>(n);
     for (int axis = 0; axis < D; ++axis) at[axis] = (at[axis] + grid()[axis]) % grid()[axis];
     ranks.push_back(rank_at(at));
   }
@@ -159,7 +159,7 @@ std::vector<Image<D>> Domains<D>::images(int rank) const {
   const std::vector<int> ranks = partners(rank);
   for (int n = 0; n < offset_count<D>; ++n) {
     if (neighbour_offset<D>(n) == Vec<D, int>{}) continue;
-    Vec<D, int> at = place(rank) + neighbour_offset<D>(n);
+    Vec<D, int> at = coordinates(rank) + neighbour_offset<D>(n);
     Image<D> image;
     for (int axis = 0; axis < D; ++axis) {
       if (at[axis] < 0) image.shift[axis] = box_quanta;
@@ -215,8 +215,8 @@ Domains<D> balanced(const Model<D>& model, const Domains<D>& domains,
                                 : 0.0;
       const double cut =
           std::floor((static_cast<double>(bin) + inside) / static_cast<double>(bins.size()) * box_quanta);
-      const auto place = static_cast<std::size_t>(n);
-      borders[place] = std::clamp(cut, borders[place - 1] + smallest, box_quanta - (count - n) * smallest);
+      const auto border = static_cast<std::size_t>(n);
+      borders[border] = std::clamp(cut, borders[border - 1] + smallest, box_quanta - (count - n) * smallest);
     }
   }
   return Domains<D>(std::move(cuts));

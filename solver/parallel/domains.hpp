@@ -5,7 +5,7 @@
 //   is
 //           shifted by a whole box)
 //   copy    the same for a solid, within the margin that its FPs and contacts need
-//   image   a neighbouring region as seen from here: its rank, and its place in the frame of this region
+//   image   a neighbouring region as seen from here: its rank, and its position in the frame of this region
 #pragma once
 
 #include <array>
@@ -42,8 +42,8 @@ class Domains {
   std::vector<int> partners(int rank) const;
 
  private:
-  Vec<D, int> place(int rank) const;
-  int rank_at(const Vec<D, int>& place) const;
+  Vec<D, int> coordinates(int rank) const;
+  int rank_at(const Vec<D, int>& coordinates) const;
   std::array<std::vector<double>, D> cuts_;
 };
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "parallel/fluid_motion.hpp"
+#include "parallel/pass_trace.hpp"
 #include "parallel/redistribute.hpp"
 
 namespace mappm {
@@ -96,116 +97,147 @@ Traffic ParallelEngine<D>::traffic() const {
 template <int D>
 void ParallelEngine<D>::step() {
   if (options_.rebalance > 0 && state_.step > 0 && state_.step % options_.rebalance == 0) rebalance();
-  watch_.start();
+  times_.start();
   if (traced_particle_.has_value() || faces_due()) state();  // what explains the pairs wants them in their cells
-  sum_densities(false);
-  if (model_.terms.fluid) sum_forces();
-  explain_pairs();
-  if (model_.terms.solids) {
-    std::vector<HomeReport<D>> reports = collect_reports();
-    watch_.end(Phase::solids);
-    reports = halo_->send_home(copies_, std::move(reports));
-    watch_.end(Phase::copies);
-    move_solids(reports);
-    watch_.end(Phase::solids);
-  }
-  move_fluid();
+  if (model_.terms.fluid)
+    std::visit([&](auto& pass) { step_with_fluid(pass); }, pass_);
+  else
+    step_of_solids_alone();
+  traced_particle_.reset();
   ++state_.step;
-  watch_.end(Phase::integrate);
+  times_.end(Phase::integrate);
 }
 
-/// Copies from the neighbours, and the densities of what lies in the region. `alone`: in no step, for output.
 template <int D>
-void ParallelEngine<D>::sum_densities(bool alone) {
-  halo_->begin_exchange(state_, *residents_, watch_);
-  if (residents_->staying()) {  // what needs no message, while they are on their way
-    std::visit([&](auto& pass) { pass.sum_inner_densities(grid_); }, pass_);
-    watch_.end(Phase::densities);
-  }
-  const bool stay = halo_->end_exchange(state_, *residents_, copies_, watch_);
-  const bool single_step = alone || (!stay && !residents_->pays());
+template <class Pass>
+void ParallelEngine<D>::step_with_fluid(Pass& pass) {
+  auto forces = sum_forces(sum_densities(pass, Purpose::step));
+  explain_pairs(forces);
+  step_solids();
+  move_fluid(forces);
+}
+
+template <int D>
+void ParallelEngine<D>::step_of_solids_alone() {
+  exchange_solids();
+  trace_.reset();
+  faces_.clear();
+  if (faces_due()) faces_.push_back({all_partners, {}});  // nothing goes through them
+  step_solids();
+}
+
+template <int D>
+void ParallelEngine<D>::exchange_solids() {
+  halo_->exchange(state_, *residents_, copies_, times_);
   place_solids();
-  watch_.end(Phase::solids);
-  if (!model_.terms.fluid) return;
-  if (!stay) order_fluid(single_step);
-  std::visit(
-      [&](auto& pass) {
-        if (!stay) {
-          pass.list(state_.fluid, grid_, residents_->may_own(), single_step ? 1.0 : 1.0 + skin, residents_->foreign(),
-                    halo_->traffic().neighbours > 0);
-          watch_.end(Phase::lists);
-          pass.sum_inner_densities(grid_);
-        }
-        pass.sum_rest_densities(state_.fluid, grid_);
-        watch_.end(Phase::densities);
-        pass.add_frozen_densities(grid_, solids_.frozen, frozen_density_sums_);
-        watch_.end(Phase::frozen_pairs);
-      },
-      pass_);
-  if (model_.terms.solids) densities_.add(solids_, *levels_, frozen_density_sums_);
-  watch_.end(Phase::solids);
-  close_densities();
-  watch_.end(Phase::densities);
+  times_.end(Phase::solids);
 }
 
 template <int D>
-void ParallelEngine<D>::order_fluid(bool single_step) {
+void ParallelEngine<D>::step_solids() {
+  if (!model_.terms.solids) return;
+  std::vector<HomeReport<D>> reports = collect_reports();
+  times_.end(Phase::solids);
+  reports = halo_->send_home(copies_, std::move(reports));
+  times_.end(Phase::copies);
+  move_solids(reports);
+  times_.end(Phase::solids);
+}
+
+/// Copies from the neighbours, and the densities of what lies in the region.
+template <int D>
+template <class Pass>
+auto ParallelEngine<D>::sum_densities(Pass& pass, Purpose purpose) ->
+    typename Pass::template Sums<Stage::known_densities> {
+  halo_->begin_exchange(state_, *residents_, times_);
+  std::optional<typename Pass::template Sums<Stage::inner_densities>> inner;
+  if (residents_->staying()) {  // what needs no message, while they are on their way
+    inner = pass.sum_inner_densities(grid_);
+    times_.end(Phase::densities);
+  }
+  const bool stay = halo_->end_exchange(state_, *residents_, copies_, times_);
+  place_solids();
+  times_.end(Phase::solids);
+  if (!stay) {
+    list_pairs(pass, purpose == Purpose::step && residents_->schedule().pays() ? StayLength::several_steps
+                                                                               : StayLength::single_step);
+    inner = pass.sum_inner_densities(grid_);
+  }
+  auto densities = std::move(*inner).sum_rest(state_.fluid, grid_);
+  times_.end(Phase::densities);
+  densities.add_frozen(grid_, solids_.frozen, frozen_density_sums_);
+  times_.end(Phase::frozen_pairs);
+  if (model_.terms.solids) densities_.add(solids_, *levels_, frozen_density_sums_);
+  times_.end(Phase::solids);
+  density_.resize(state_.fluid.size());
+  auto known = std::move(densities).close(residents_->others(), density_);
+  close_frozen_densities();
+  times_.end(Phase::densities);
+  return known;
+}
+
+/// Begins a stay: a new order of the PPs, and the lists of their pairs.
+template <int D>
+template <class Pass>
+void ParallelEngine<D>::list_pairs(Pass& pass, StayLength length) {
   grid_.sort(state_.fluid);
   find_rows();
-  residents_->settle(state_.fluid, single_step);
+  residents_->settle(state_.fluid, length);
   ++orderings_;
-  watch_.end(Phase::sort);
+  times_.end(Phase::sort);
+  pass.list(state_.fluid, grid_, residents_->may_come_to_own(), length == StayLength::single_step ? 1.0 : 1.0 + skin,
+            residents_->foreign(), halo_->traffic().neighbours > 0);
+  times_.end(Phase::lists);
 }
 
-/// Those in the region are known now.
+/// Of those in the region; faults of all densities are noted.
 template <int D>
-void ParallelEngine<D>::close_densities() {
-  density_.resize(state_.fluid.size());
-  const std::vector<std::uint32_t> others = residents_->others();
-  const auto wrong = std::visit([&](auto& pass) { return pass.close_densities(others, density_); }, pass_);
+void ParallelEngine<D>::close_frozen_densities() {
+  const auto wrong = find_out_of_range(density_, model_.rest_density);
   for (std::size_t i = wrong.value_or(density_.size()); i < density_.size(); ++i)
-    note_density(model_, {state_.step, FaultPlace::What::fluid_density, state_.fluid.id[i]}, density_[i], fault_);
+    note_density(model_, {state_.step, FaultOrigin::What::fluid_density, state_.fluid.id[i]}, density_[i], fault_);
   for (std::size_t k = 0; k < solids_.frozen.size(); ++k) {
     FrozenInStep<D>& fp = solids_.frozen[k];
     if (!halo_->region().contains(fp.place.x)) continue;
     set_density(model_, fp, summed_density(frozen_density_sums_[k], fp.own_density));
     const std::uint64_t solid = solids_.bodies[fp.solid].solid->id;
-    note_density(model_, {state_.step, FaultPlace::What::frozen_density, solid, fp.index}, fp.density, fault_);
+    note_density(model_, {state_.step, FaultOrigin::What::frozen_density, solid, fp.index}, fp.density, fault_);
   }
 }
 
 /// Densities of ghosts, and what needs none of them while they are on their way.
 template <int D>
-void ParallelEngine<D>::sum_forces() {
+template <class Numbers>
+StepSums<D, Numbers, Stage::forces> ParallelEngine<D>::sum_forces(
+    StepSums<D, Numbers, Stage::known_densities>&& densities) {
   halo_->begin_densities(state_.fluid, *residents_, density_, solids_);
-  watch_.end(Phase::exchange);
-  std::visit([&](auto& pass) { pass.sum_inner(grid_); }, pass_);
-  watch_.end(Phase::pairs);
-  halo_->end_densities(state_.fluid, *residents_, density_, solids_);
-  watch_.end(Phase::exchange);
-  std::visit(
-      [&](auto& pass) {
-        pass.take_densities(density_);
-        pass.sum_rest(grid_);
-        watch_.end(Phase::pairs);
-        pass.add_frozen(grid_, solids_.frozen, frozen_sums_);
-        watch_.end(Phase::frozen_pairs);
-      },
-      pass_);
+  times_.end(Phase::exchange);
+  auto inner = std::move(densities).sum_inner(grid_);
+  times_.end(Phase::pairs);
+  halo_->end_densities(*residents_, density_, solids_);
+  times_.end(Phase::exchange);
+  auto forces = std::move(inner).sum_rest(density_, grid_);
+  times_.end(Phase::pairs);
+  forces.add_frozen(grid_, solids_.frozen, frozen_sums_);
+  times_.end(Phase::frozen_pairs);
+  return forces;
 }
 
 /// As the next step will see them.
 template <int D>
 Sample<D> ParallelEngine<D>::sample() {
-  const Stopwatch watch = watch_;
+  const PhaseTimes times = times_;
   state();
-  sum_densities(true);
+  if (model_.terms.fluid)
+    std::visit([&](auto& pass) { static_cast<void>(sum_densities(pass, Purpose::output)); }, pass_);
+  else
+    exchange_solids();
   DensityField<D> field;
   for (std::size_t i = 0; i < state_.fluid.size(); ++i)
     if (halo_->region().contains(state_.fluid.position(i))) field.fluid.push_back(density_[i]);
   for (const FrozenInStep<D>& fp : solids_.frozen)
     if (halo_->region().contains(fp.place.x)) field.frozen.push_back(point_of(fp, *solids_.bodies[fp.solid].solid));
-  watch_ = watch;
+  times_ = times;
   return {state(), std::move(field)};
 }
 
@@ -227,23 +259,36 @@ void ParallelEngine<D>::place_solids() {
 
 /// What the pass summed, taken apart where that was asked for: the ledger of the faces, the trace of one PP.
 template <int D>
-void ParallelEngine<D>::explain_pairs() {
+template <class Forces>
+void ParallelEngine<D>::explain_pairs(const Forces& forces) {
   faces_.clear();
   if (faces_due()) {
     const FaceLedger<D> ledger(model_, domains_, halo_->region(), grid_);
     faces_ = ledger.faces(state_.fluid, density_, solids_.frozen);
-    faces_.push_back({all_partners, ledger.received(state_.fluid, pass_, solids_.frozen, frozen_sums_)});
+    faces_.push_back({all_partners, impulse_received(forces)});
   }
   trace_.reset();
   if (!traced_particle_.has_value()) return;
-  const auto partners =
-      std::visit([&](auto& pass) { return pass.trace(state_.fluid, grid_, solids_.frozen, *traced_particle_); }, pass_);
-  if (partners) {
-    trace_ = StepTrace<D>{state_.step, *traced_particle_, *partners};
-    for (PartnerTrace<D>& partner : trace_->partners)
-      if (partner.frozen) partner.id = solids_.bodies[partner.id].solid->id;
-  }
-  traced_particle_.reset();
+  const auto partners = trace_partners(forces, state_.fluid, grid_, solids_.frozen, *traced_particle_);
+  if (!partners) return;
+  trace_ = StepTrace<D>{state_.step, *traced_particle_, *partners};
+  for (PartnerTrace<D>& partner : trace_->partners)
+    if (partner.frozen) partner.id = solids_.bodies[partner.id].solid->id;
+}
+
+/// Impulse (iota) that the pass summed for all PPs and FPs in the region.
+template <int D>
+template <class Forces>
+Vec<D, Int128> ParallelEngine<D>::impulse_received(const Forces& forces) const {
+  Vec<D, Int128> sum{};
+  const auto add = [&](const Vec<D, std::int64_t>& impulse) {
+    for (int axis = 0; axis < D; ++axis) sum[axis] += impulse[axis];
+  };
+  for (std::uint32_t i = 0; i < state_.fluid.size(); ++i)
+    if (halo_->region().contains(state_.fluid.position(i))) add(forces.sums(forces.pass().blocks().slot(i)).impulse);
+  for (std::size_t k = 0; k < solids_.frozen.size(); ++k)
+    if (halo_->region().contains(solids_.frozen[k].place.x)) add(frozen_sums_[k].impulse);
+  return sum;
 }
 
 /// Sums the FPs in this region onto their solids: owned ones into `loads_`, copies into reports for their owners.
@@ -289,7 +334,7 @@ void ParallelEngine<D>::move_solids(const std::vector<HomeReport<D>>& from_other
   note_overlaps(model_, state_.step, loads_, overlaps_);
   for (std::size_t a = 0; a < state_.solids.size(); ++a) {
     Solid<D>& solid = state_.solids[a];
-    fault_.note({state_.step, FaultPlace::What::solid_motion, solid.id},
+    fault_.note({state_.step, FaultOrigin::What::solid_motion, solid.id},
                 finish_step(model_, state_.step, solid, std::move(loads_[a]), state_.outside_impulse));
   }
 }
@@ -315,25 +360,23 @@ void ParallelEngine<D>::find_rows() {
 /// Moves the PPs that lie in the region: most of those in the inner cells, and some that came in since these were
 /// filled.
 template <int D>
-void ParallelEngine<D>::move_fluid() {
+template <class Forces>
+void ParallelEngine<D>::move_fluid(Forces& forces) {
   FluidMotion<D> all(model_, state_.step, halo_->region(), fault_);
-  std::visit(
-      [&](auto& pass) {
+  const auto& blocks = forces.pass().blocks();
 #pragma omp parallel num_threads(options_.threads) if (options_.threads > 1)
-        {
-          FluidMotion<D> motion(model_, state_.step, halo_->region(), fault_);
+  {
+    FluidMotion<D> motion(model_, state_.step, halo_->region(), fault_);
 #pragma omp for schedule(static)
-          for (std::size_t n = 0; n < rows_.size(); ++n) {
-            const Row& row = rows_[n];
-            motion.move(pass, state_.fluid, row.first, row.first + pass.gap(row.plane), row.last - row.first);
-          }
+    for (std::size_t n = 0; n < rows_.size(); ++n) {
+      const Row& row = rows_[n];
+      motion.move(forces, state_.fluid, row.first, row.first + blocks.gap(row.plane), row.last - row.first);
+    }
 #pragma omp critical
-          all.add(motion);
-        }
-        for (const std::uint32_t i : residents_->near_outside()) all.move(pass, state_.fluid, i, pass.place(i), 1);
-      },
-      pass_);
-  residents_->moved(all.farthest());
+    all.add(motion);
+  }
+  for (const std::uint32_t i : residents_->near_outside()) all.move(forces, state_.fluid, i, blocks.slot(i), 1);
+  residents_->schedule().owned_moved(all.farthest());
   state_.outside_impulse += all.impulse();
 }
 

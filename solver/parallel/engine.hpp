@@ -11,9 +11,9 @@
 #include "parallel/fluid_pass.hpp"
 #include "parallel/frozen_densities.hpp"
 #include "parallel/halo.hpp"
+#include "parallel/phase_times.hpp"
 #include "parallel/placed_solids.hpp"
 #include "parallel/residents.hpp"
-#include "parallel/stopwatch.hpp"
 #include "particles/cell_levels.hpp"
 #include "particles/engine.hpp"
 
@@ -27,47 +27,62 @@ struct ParallelOptions {
 };
 
 template <int D>
-class ParallelEngine {
+class ParallelEngine final : public Engine<D> {
  public:
   /// `state`: this process' share under `domains`. The borders are first moved to the particle load.
   ParallelEngine(const Model<D>& model, const Domains<D>& domains, const Communicator& communicator, State<D>&& state,
                  const ParallelOptions& options);
 
-  void step();
-  std::uint64_t present_step() const { return state_.step; }
-  State<D>& state();
-  Sample<D> sample();
-  const FirstFault& first_fault() const { return fault_; }
-  const FirstOverlaps& overlaps() const { return overlaps_; }
-  PhaseSeconds phase_seconds() const { return watch_.seconds(); }
-  Traffic traffic() const;
+  void step() override;
+  std::uint64_t present_step() const override { return state_.step; }
+  State<D>& state() override;
+  Sample<D> sample() override;
+  const FirstFault& first_fault() const override { return fault_; }
+  const FirstOverlaps& overlaps() const override { return overlaps_; }
+  PhaseSeconds phase_seconds() const override { return times_.seconds(); }
+  std::optional<DomainReport<D>> domain_report() const override {
+    return DomainReport<D>{traffic(), orderings_, domains_.cuts()};
+  }
+  std::vector<FaceImpulse<D>> faces() const override { return faces_; }
   /// Steps so far in which the PPs of this process were put in order anew.
   std::uint64_t orderings() const { return orderings_; }
   const Domains<D>& domains() const { return domains_; }
-  /// The ledger of the faces in the last step, in the order of partners, then the entry of all partners; empty where
-  /// none was due.
-  const std::vector<FaceImpulse<D>>& faces() const { return faces_; }
 
-  void trace_next_step(std::uint64_t particle) { traced_particle_ = particle; }
-  const MaybeTrace<D>& last_trace() const { return trace_; }
+  void trace_next_step(std::uint64_t particle) override { traced_particle_ = particle; }
+  const MaybeTrace<D>& last_trace() const override { return trace_; }
 
   /// Moves the borders of the domains to the particle load and every particle to its new owner.
   void rebalance();
 
  private:
+  Traffic traffic() const;
   void start_domains();
   bool faces_due() const {
     const std::uint64_t step = state_.step + 1;
     return options_.faces > 0 && (step % options_.faces == 0 || step == options_.last_step);
   }
-  void sum_densities(bool alone);
+  /// What densities are summed for. Output asks for them in no step: what follows from them is not kept.
+  enum class Purpose { step, output };
+  template <class Pass>
+  void step_with_fluid(Pass& pass);
+  void step_of_solids_alone();
+  void exchange_solids();
+  void step_solids();
   void place_solids();
-  void order_fluid(bool single_step);
-  void close_densities();
-  void sum_forces();
-  void explain_pairs();
+  template <class Pass>
+  auto sum_densities(Pass& pass, Purpose purpose) -> typename Pass::template Sums<Stage::known_densities>;
+  template <class Pass>
+  void list_pairs(Pass& pass, StayLength length);
+  void close_frozen_densities();
+  template <class Numbers>
+  StepSums<D, Numbers, Stage::forces> sum_forces(StepSums<D, Numbers, Stage::known_densities>&& densities);
+  template <class Forces>
+  void explain_pairs(const Forces& forces);
+  template <class Forces>
+  Vec<D, Int128> impulse_received(const Forces& forces) const;
   void find_rows();
-  void move_fluid();
+  template <class Forces>
+  void move_fluid(Forces& forces);
   std::vector<HomeReport<D>> collect_reports();
   void move_solids(const std::vector<HomeReport<D>>& from_others);
 
@@ -105,7 +120,7 @@ class ParallelEngine {
   std::uint64_t orderings_ = 0;
   FirstFault fault_;
   FirstOverlaps overlaps_;
-  Stopwatch watch_;
+  PhaseTimes times_;
   Traffic before_;  // of the domains before the present ones
 };
 

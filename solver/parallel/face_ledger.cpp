@@ -69,42 +69,26 @@ std::vector<FaceImpulse<D>> FaceLedger<D>::faces(const FluidParticles<D>& fluid,
       if (region_.contains(ghost.x)) continue;
       Vec<D, Int128>& sum = from[domains_.owner(ghost.x)];
       for_each_near(ghost.x, [&](std::size_t i) {
-        const PairPoint<D> own = point_of(model_, fluid, density, i);
-        if (region_.contains(own.x))
-          add(sum, impulse_of_pair<Kernel>(numbers, own, ghost, [](const auto&) { return Real(1); }), 1);
+        const PairPoint<D> point = point_of(model_, fluid, density, i);
+        if (region_.contains(point.x))
+          add(sum, impulse_of_pair<Kernel>(numbers, point, ghost, [](const auto&) { return Real(1); }), 1);
       });
     }
     for (const FrozenInStep<D>& fp : frozen) {
       const PairPoint<D> point{fp.place.x, fp.place.v, fp.volume};
-      const bool own_point = region_.contains(point.x);
+      const bool point_is_here = region_.contains(point.x);
       const NoSlipFactor<D, Real> beta(model_, fp);
       for_each_near(point.x, [&](std::size_t i) {
         const PairPoint<D> other = point_of(model_, fluid, density, i);
-        if (region_.contains(other.x) == own_point) return;
-        Vec<D, Int128>& sum = from[domains_.owner(own_point ? other.x : point.x)];
-        add(sum, impulse_of_pair<Kernel>(numbers, other, point, beta), own_point ? -1 : 1);
+        if (region_.contains(other.x) == point_is_here) return;
+        Vec<D, Int128>& sum = from[domains_.owner(point_is_here ? other.x : point.x)];
+        add(sum, impulse_of_pair<Kernel>(numbers, other, point, beta), point_is_here ? -1 : 1);
       });
     }
   });
   std::vector<FaceImpulse<D>> faces;
   for (const auto& [rank, impulse] : from) faces.push_back({rank, impulse});
   return faces;
-}
-
-template <int D>
-Vec<D, Int128> FaceLedger<D>::received(const FluidParticles<D>& fluid, const ModelPass<D>& pass,
-                                       const std::vector<FrozenInStep<D>>& frozen,
-                                       const std::vector<NeighbourSums<D>>& frozen_sums) const {
-  Vec<D, Int128> sum{};
-  std::visit(
-      [&](const auto& numbered) {
-        for (std::uint32_t i = 0; i < fluid.size(); ++i)
-          if (region_.contains(fluid.position(i))) add(sum, numbered.sums(numbered.place(i)).impulse, 1);
-      },
-      pass);
-  for (std::size_t k = 0; k < frozen.size(); ++k)
-    if (region_.contains(frozen[k].place.x)) add(sum, frozen_sums[k].impulse, 1);
-  return sum;
 }
 
 template class FaceLedger<2>;

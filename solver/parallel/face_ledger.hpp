@@ -4,13 +4,14 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "parallel/domains.hpp"
-#include "parallel/fluid_pass.hpp"
 #include "particles/cell_grid.hpp"
 #include "particles/face_impulse.hpp"
 #include "particles/frozen.hpp"
+#include "particles/model.hpp"
 
 namespace mappm {
 
@@ -26,11 +27,6 @@ class FaceLedger {
   /// density: of the PPs, PPs per rcut^D.
   std::vector<FaceImpulse<D>> faces(const FluidParticles<D>& fluid, std::span<const double> density,
                                     const std::vector<FrozenInStep<D>>& frozen) const;
-
-  /// Impulse that the pass summed for all PPs and FPs in the region.
-  Vec<D, Int128> received(const FluidParticles<D>& fluid, const ModelPass<D>& pass,
-                          const std::vector<FrozenInStep<D>>& frozen,
-                          const std::vector<NeighbourSums<D>>& frozen_sums) const;
 
  private:
   template <class Visit>

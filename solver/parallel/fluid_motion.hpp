@@ -22,20 +22,19 @@ class FluidMotion {
   FluidMotion(const Model<D>& model, std::uint64_t step, const Region<D>& region, FirstFault& fault)
       : model_(model), step_(step), region_(region), constants_(particle_step(model, step)), fault_(fault) {}
 
-  /// Moves PPs [first, first + count), which lie side by side from this place of the pass on. `pass` gives their sums
+  /// Moves PPs [first, first + count), which lie side by side from this slot of the pass on. `pass` gives their sums
   /// and hears of their new state.
   template <class Pass>
-  MAPPM_INLINE void move(Pass& pass, FluidParticles<D>& fluid, std::uint32_t first, std::uint32_t place,
+  MAPPM_INLINE void move(Pass& pass, FluidParticles<D>& fluid, std::uint32_t first, std::uint32_t slot,
                          std::uint32_t count) {
     with_force_field(model_, step_, [&]<bool field>(std::bool_constant<field> with_field) {
       for (std::uint32_t n = 0; n < count;) {
         if constexpr (!field)
-          if ((place + n) % lane_count == 0 && n + lane_count <= count &&
-              move_lanes(pass, fluid, first + n, place + n)) {
+          if ((slot + n) % lane_count == 0 && n + lane_count <= count && move_lanes(pass, fluid, first + n, slot + n)) {
             n += lane_count;
             continue;
           }
-        move_one(pass, fluid, first + n, place + n, with_field);
+        move_one(pass, fluid, first + n, slot + n, with_field);
         ++n;
       }
     });
@@ -69,7 +68,7 @@ class FluidMotion {
   }
 
   template <class Pass, bool field>
-  MAPPM_INLINE void move_one(Pass& pass, FluidParticles<D>& fluid, std::uint32_t i, std::uint32_t place,
+  MAPPM_INLINE void move_one(Pass& pass, FluidParticles<D>& fluid, std::uint32_t i, std::uint32_t slot,
                              std::bool_constant<field>) {
     Vec<D, double> x, v;
     for (int axis = 0; axis < D; ++axis) {
@@ -77,7 +76,7 @@ class FluidMotion {
       v[axis] = fluid.v(axis)[i];
     }
     if (!region_.contains(x)) return;
-    NeighbourSums<D> sums = pass.sums(place);
+    NeighbourSums<D> sums = pass.sums(slot);
     if constexpr (field) {
       const Vec<D, std::int64_t> impulse = field_impulse(model_.fluid_field, x);
       sums.impulse += impulse;
@@ -86,19 +85,19 @@ class FluidMotion {
     const Vec<D, double> before = x;
     const RangeFault fault = advance(x, v, sums, constants_);
     if (fault != RangeFault::none) [[unlikely]]
-      report(fault_, fault, {step_, FaultPlace::What::fluid_motion, fluid.id[i]}, v, sums);
+      report(fault_, fault, {step_, FaultOrigin::What::fluid_motion, fluid.id[i]}, v, sums);
     for (int axis = 0; axis < D; ++axis) {
       fluid.x(axis)[i] = x[axis];
       fluid.v(axis)[i] = v[axis];
     }
-    pass.moved(place, x, v);
+    pass.moved(slot, x, v);
     keep_farthest(x - before);
     ++count_;
   }
 
   /// False, and nothing done, where one of them is out of range or not in the region.
   template <class Pass>
-  MAPPM_INLINE bool move_lanes(Pass& pass, FluidParticles<D>& fluid, std::uint32_t i, std::uint32_t place) {
+  MAPPM_INLINE bool move_lanes(Pass& pass, FluidParticles<D>& fluid, std::uint32_t i, std::uint32_t slot) {
     Vec<D, Lanes> x, v;
     auto outside = Lanes(0.0) > Lanes(0.0);
     for (int axis = 0; axis < D; ++axis) {
@@ -106,23 +105,23 @@ class FluidMotion {
       v[axis] = load_lanes(&fluid.v(axis)[i]);
       outside = outside || x[axis] < region_.low[axis] || x[axis] >= region_.high[axis];
     }
-    const auto motion = motion_of(x, v, pass.sums_of_lanes(place), constants_);
+    const auto motion = motion_of(x, v, pass.sums_of_lanes(slot), constants_);
     if (any_of_lanes(outside || motion.beyond.any())) [[unlikely]]
       return false;
     for (int axis = 0; axis < D; ++axis) {
       store_lanes(motion.x[axis], &fluid.x(axis)[i]);
       store_lanes(motion.v[axis], &fluid.v(axis)[i]);
     }
-    pass.moved(place, motion.x, motion.v);
+    pass.moved(slot, motion.x, motion.v);
     keep_farthest(motion.x - x);
     count_ += lane_count;
     return true;
   }
 
-  [[gnu::noinline]] static void report(FirstFault& first, RangeFault fault, const FaultPlace& place,
+  [[gnu::noinline]] static void report(FirstFault& first, RangeFault fault, const FaultOrigin& origin,
                                        const Vec<D, double>& v, const NeighbourSums<D>& sums) {
 #pragma omp critical
-    note_motion(fault, place, v, sums, first);
+    note_motion(fault, origin, v, sums, first);
   }
 
   const Model<D>& model_;

@@ -1,30 +1,19 @@
 // The pair passes of the fast engine, first of densities, then of forces: in each every pair of PPs once (half list),
-// every PP-FP pair once, in rows of lanes.
-//
-// The calls of a step, of which `list` is left out while the PPs keep their order:
-//   list                                       where the PPs have a new order
-//   sum_inner_densities, sum_rest_densities, add_frozen_densities
-//   close_densities                            the densities of owned PPs are known; those of others come by message
-//   sum_inner, take_densities, sum_rest, add_frozen
-//   moved                                      of each owned PP
+// every PP-FP pair once, in rows of lanes. The passes of a step go from stage to stage (`StepSums`).
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <variant>
 #include <vector>
 
-#include "parallel/kept_lists.hpp"
-#include "parallel/lanes_loop.hpp"
-#include "parallel/near_rows.hpp"
+#include "parallel/bands.hpp"
+#include "parallel/frozen_lists.hpp"
+#include "parallel/pair_lists.hpp"
 #include "particles/cell_grid.hpp"
 #include "particles/frozen.hpp"
-#include "particles/pair_trace.hpp"
 
 namespace mappm {
 
@@ -41,154 +30,169 @@ Vec<D, double> cells_per_reach(const Model<D>& model, double reach) {
   return cells;
 }
 
-/// Blocks near one block, with their boxes (rcut), side by side.
-template <int D>
-struct Candidates {
-  std::vector<std::uint32_t> block;
-  std::array<Column<double>, D> low, high;
+/// Where the sums of a step stand:
+///   inner_densities   summed: densities over pairs that have nothing to do with foreign PPs
+///   densities         summed: those over all pairs of PPs
+///   known_densities   those of owned PPs are known; those of others come by message
+///   inner_forces      summed: forces of pairs that have nothing to do with foreign PPs
+///   forces            summed: those of all pairs of PPs
+enum class Stage { inner_densities, densities, known_densities, inner_forces, forces };
 
-  void make_room(std::size_t count) {
-    if (block.size() >= count + lane_count) [[likely]]
-      return;
-    block.resize(2 * count + lane_count);
-    for (auto& values : low) values.resize(block.size());
-    for (auto& values : high) values.resize(block.size());
-  }
-  /// What is read behind the last one lies far away.
-  void end(std::size_t count) {
-    make_room(count);
-    for (std::size_t n = count; n < count + lane_count; ++n) low[0][n] = std::numeric_limits<double>::max();
-  }
-};
+template <int D, class Numbers, Stage stage>
+class StepSums;
 
-/// `Numbers`: DoublePairs or SinglePairs, as the model has it.
+/// `Numbers`: DoubleLanes or SingleLanes, as the model has it.
 template <int D, class Numbers>
 class FluidPass {
  public:
-  using Lists = PartnerLists<D, Numbers>;
+  template <Stage stage>
+  using Sums = StepSums<D, Numbers, stage>;
 
   FluidPass(const Model<D>& model, int threads)
-      : model_(model), numbers_(model.pair, model.rest_density), threads_(threads) {}
+      : model_(model),
+        numbers_(model.pair, model.rest_density),
+        bands_(threads),
+        lists_(model, bands_),
+        scratch_(bands_.threads()) {}
 
-  /// Finds the pairs of which one PP lies in `region`, up to a distance of `reach` (rcut, at least 1): the sums find
-  /// all within rcut until two PPs have come nearer by the rest, or one from outside the region has entered the part
-  /// that matters. `fluid` is in the order of `grid`, whose cells are fit to that reach or a longer one. `foreign`: the
-  /// PPs that others than `moved` may change. With `apart`, the inner sums are of pairs that have nothing to do with
-  /// these.
+  /// Lists the pairs of which one PP lies in `region` and whose distance is at most `reach` (rcut, at least 1). The
+  /// lists hold all pairs within rcut as long as no PP has moved by more than half of reach - 1, and none that was
+  /// outside the region has come into what this process owns. `fluid` is in the order of `grid`, whose cells are fit to
+  /// that reach or a longer one. `foreign`: indices of the PPs that change other than by `moved`. With `apart`, the
+  /// inner sums are those of PPs that have no foreign one in their block or a block nearby; without it they are empty.
   void list(FluidParticles<D>& fluid, const CellGrid<D>& grid, const Region<D>& region, double reach,
             std::span<const std::uint32_t> foreign, bool apart);
-  /// With the PPs in the order of `list`: densities over all PPs near each PP of the region; those of others are
-  /// partial and meaningless. In two parts, of which only the second looks at foreign PPs.
-  void sum_inner_densities(const CellGrid<D>& grid) { sum_densities_of(inner, grid); }
-  void sum_rest_densities(FluidParticles<D>& fluid, const CellGrid<D>& grid);
-  /// Adds those of PPs and FPs. `frozen` are all FPs in reach; sums[k] becomes the sum over PPs where FP k lies in the
-  /// region, density quanta.
-  void add_frozen_densities(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
-                            std::vector<std::int64_t>& sums);
-  /// Ends the sums of densities: density[i] of every PP, PPs per rcut^D. Those that are not owned get the rest density.
-  /// Returns an owned PP whose density is out of range, if there is one.
-  std::optional<std::uint32_t> close_densities(std::span<const std::uint32_t> others, std::span<double> density);
-  /// Densities of foreign PPs from others.
-  void take_densities(std::span<const double> density);
-  /// The same for the forces.
-  void sum_inner(const CellGrid<D>& grid) { sum_forces_of(inner, grid); }
-  void sum_rest(const CellGrid<D>& grid) { sum_forces_of(rest, grid); }
-  void add_frozen(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
-                  std::vector<NeighbourSums<D>>& frozen_sums);
-  /// After all sums: the new state of the PP at this place, or of those that lie side by side from there on, as many as
-  /// there are lanes of the state. Each PP that is not foreign must be given before the next sum.
-  template <class Real>
-  MAPPM_INLINE void moved(std::uint32_t place, const Vec<D, Real>& x, const Vec<D, Real>& v) {
-    if (serves_on_) blocks_.lay(numbers_, place, x, v);
-  }
+  /// Begins the sums of a step over the lists: densities over all PPs near each PP of the region, with the PPs in the
+  /// order of `list`; those of others are partial and meaningless. Looks at no foreign PP.
+  [[nodiscard]] Sums<Stage::inner_densities> sum_inner_densities(const CellGrid<D>& grid);
 
-  /// The place of PP i; what places are more than indices in a plane of cells.
-  std::uint32_t place(std::uint32_t i) const { return blocks_.place(i); }
-  std::uint32_t gap(int plane) const { return blocks_.gap(plane); }
-  /// Sums of the PP at this place.
-  NeighbourSums<D> sums(std::uint32_t place) const { return numbers_.sums(blocks_.sums(place)); }
-  /// Sums of as many PPs from this place on as there are lanes of the state, of whose number it must be a multiple.
-  MAPPM_INLINE NeighbourSums<D, IntLanes> sums_of_lanes(std::uint32_t place) const {
-    return numbers_.sums(blocks_.sums_of_lanes(place));
-  }
-
-  /// After `add_frozen` in the step in which `fluid` was ordered: what each partner
-  /// gave to the PP with this id that lies in the region of the grid, every pair of the pass taken alone; none where
-  /// there is no such PP. For an FP `id` is the index of its solid in the step.
-  std::optional<std::vector<PartnerTrace<D>>> trace(const FluidParticles<D>& fluid, const CellGrid<D>& grid,
-                                                    const std::vector<FrozenInStep<D>>& frozen, std::uint64_t particle);
-
-  /// Distances from boxes that `list` worked out.
-  std::uint64_t measured() const {
-    std::uint64_t sum = 0;
-    for (const Search& search : searches_) sum += search.measured;
-    return sum;
-  }
-  /// What it found.
-  const std::vector<KeptLists<D, Numbers>>& kept() const { return kept_; }
+  const Model<D>& model() const { return model_; }
+  const Numbers& numbers() const { return numbers_; }
+  const PairBlocks<D, Numbers>& blocks() const { return blocks_; }
+  const PairLists<D, Numbers>& lists() const { return lists_; }
 
  private:
-  enum Part : std::size_t { inner, rest, parts };
-  using Centre = PairCentre<D, Numbers>;
-  /// What a thread searches with.
-  struct Search {
-    NearRows<D> near;
-    Lists lists;
-    Candidates<D> candidates;
-    std::vector<std::uint32_t> found;  // near one PP
-    std::uint64_t measured = 0;
+  template <int, class, Stage>
+  friend class StepSums;
+  using Lists = PartnerLists<D, Numbers>;
+  using Part = typename PairLists<D, Numbers>::Part;
+  static constexpr std::uint32_t lanes = block_lanes<Numbers>;
+  /// Of a thread.
+  struct Scratch {
+    FrozenSearch<D, Numbers> frozen;
     Column<typename Numbers::Real> squares;
   };
-  template <class Work>
-  void for_each_row(const CellGrid<D>& grid, int first_plane, int last_plane, Work&& work) const;
-  template <class Work>
-  void for_each_block_list(const FluidParticles<D>& fluid, const CellGrid<D>& grid, const Vec<D, int>& row,
-                           double reach, Search& search, Work&& work);
-  void find_boxes(const FluidParticles<D>& fluid);
-  std::uint16_t lanes_near(const FluidParticles<D>& fluid, std::uint32_t place, std::uint32_t block) const;
-  template <class Work>
-  void for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
-                            std::span<const std::uint32_t> chosen, Search& search, Work&& work) const;
-  Centre centre(const FrozenInStep<D>& fp) const;
-  template <class Work>
-  void for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen, Work&& work);
-  static constexpr std::uint32_t lanes = block_lanes<Numbers>;
-  struct PairSums {
-    NeighbourSums<D> centre, other;
-    std::int64_t density;
-  };
-  template <class Kernel, bool transport, bool lanes_first, class Beta>
-  PairSums sums_of_pair(const Centre& centre, std::uint32_t place, const Beta& beta) const;
-  void sum_densities_of(Part part, const CellGrid<D>& grid);
-  void sum_forces_of(Part part, const CellGrid<D>& grid);
+
+  void sum_densities(Part part, const CellGrid<D>& grid);
+  void sum_forces(Part part, const CellGrid<D>& grid);
+  void refill_foreign(FluidParticles<D>& fluid);
+  void close_densities(std::span<const std::uint32_t> others, std::span<double> density);
+  void take_densities(std::span<const double> density);
   template <bool foreign_alone>
   void set_densities(std::span<const double> density);
-  std::vector<std::uint8_t> wide_blocks(const FluidParticles<D>& fluid) const;
-  std::vector<std::uint8_t> places_in(const FluidParticles<D>& fluid, const Region<D>& region) const;
-  int band_height(const CellGrid<D>& grid) const;
   template <class Work>
-  void for_each_band(const CellGrid<D>& grid, Work&& work);
+  void for_each_frozen_list(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen, Work&& work);
+  void add_frozen_densities(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
+                            std::vector<std::int64_t>& sums);
+  void add_frozen_forces(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
+                         std::vector<NeighbourSums<D>>& frozen_sums);
 
   const Model<D>& model_;
   Numbers numbers_;
-  int threads_;
-  std::vector<Vec<D, int>> half_rows_, all_rows_;
-  std::vector<Search> searches_;  // of the threads
+  Bands<D> bands_;
   PairBlocks<D, Numbers> blocks_;
-  std::array<Column<double>, D> box_low_, box_high_;  // of the blocks, rcut
-  std::vector<KeptLists<D, Numbers>> kept_;           // of each band one for each part
-  std::vector<std::uint8_t> foreign_;                 // of each block: whether it holds a foreign PP
-  bool serves_on_ = false;                            // the lists, beyond this step
+  PairLists<D, Numbers> lists_;
+  std::vector<Scratch> scratch_;
+  bool serves_on_ = false;  // the lists, beyond this step
 };
+
+/// The sums of one step at a stage. Each stage offers what may be done at it, and what leads to the next; then it is
+/// used up. What a step has begun may be dropped, for lists to be made anew.
+template <int D, class Numbers, Stage stage>
+class StepSums {
+ public:
+  StepSums(StepSums&&) = default;
+  StepSums& operator=(StepSums&&) = default;
+
+  /// Once foreign PPs are up to date: densities over the pairs that have to do with them.
+  StepSums<D, Numbers, Stage::densities> sum_rest(FluidParticles<D>& fluid, const CellGrid<D>& grid) &&
+      requires(stage == Stage::inner_densities) {
+    pass_->refill_foreign(fluid);
+    pass_->sum_densities(PairLists<D, Numbers>::rest, grid);
+    return StepSums<D, Numbers, Stage::densities>(*pass_);
+  }
+
+  /// Adds those of PPs and FPs. `frozen` are all FPs in reach; sums[k] becomes the sum over PPs where FP k lies in the
+  /// region, density quanta.
+  void add_frozen(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
+                  std::vector<std::int64_t>& sums) requires(stage == Stage::densities) {
+    pass_->add_frozen_densities(grid, frozen, sums);
+  }
+  /// Ends the sums of densities: density[i] of every PP, PPs per rcut^D. Those that are not owned get the rest density.
+  StepSums<D, Numbers, Stage::known_densities> close(std::span<const std::uint32_t> others,
+                                                     std::span<double> density) &&
+      requires(stage == Stage::densities) {
+    pass_->close_densities(others, density);
+    return StepSums<D, Numbers, Stage::known_densities>(*pass_);
+  }
+
+  /// Looks at no foreign PP.
+  StepSums<D, Numbers, Stage::inner_forces> sum_inner(const CellGrid<D>& grid) &&
+      requires(stage == Stage::known_densities) {
+    pass_->sum_forces(PairLists<D, Numbers>::inner, grid);
+    return StepSums<D, Numbers, Stage::inner_forces>(*pass_);
+  }
+
+  /// Once the densities of foreign PPs have come from others.
+  StepSums<D, Numbers, Stage::forces> sum_rest(std::span<const double> density, const CellGrid<D>& grid) &&
+      requires(stage == Stage::inner_forces) {
+    pass_->take_densities(density);
+    pass_->sum_forces(PairLists<D, Numbers>::rest, grid);
+    return StepSums<D, Numbers, Stage::forces>(*pass_);
+  }
+
+  /// Adds those of PPs and FPs.
+  void add_frozen(const CellGrid<D>& grid, const std::vector<FrozenInStep<D>>& frozen,
+                  std::vector<NeighbourSums<D>>& frozen_sums) requires(stage == Stage::forces) {
+    pass_->add_frozen_forces(grid, frozen, frozen_sums);
+  }
+  /// Sums of the PP at this slot.
+  NeighbourSums<D> sums(std::uint32_t slot) const requires(stage == Stage::forces) {
+    return pass_->numbers_.sums(pass_->blocks_.sums(slot));
+  }
+  /// Sums of as many PPs from this slot on as there are lanes of the state, of whose number it must be a multiple.
+  MAPPM_INLINE NeighbourSums<D, IntLanes> sums_of_lanes(std::uint32_t slot) const requires(stage == Stage::forces) {
+    return pass_->numbers_.sums(pass_->blocks_.sums_of_lanes(slot));
+  }
+  /// The new state of the PP at this slot, or of those that lie side by side from there on, as many as there are lanes
+  /// of the state. Each PP that is not foreign must be given before the next step.
+  template <class Real>
+  MAPPM_INLINE void moved(std::uint32_t slot, const Vec<D, Real>& x,
+                          const Vec<D, Real>& v) requires(stage == Stage::forces) {
+    if (pass_->serves_on_) pass_->blocks_.set_motion(pass_->numbers_, slot, x, v);
+  }
+  const FluidPass<D, Numbers>& pass() const requires(stage == Stage::forces) { return *pass_; }
+
+ private:
+  friend class FluidPass<D, Numbers>;
+  template <int, class, Stage>
+  friend class StepSums;
+  explicit StepSums(FluidPass<D, Numbers>& pass) : pass_(&pass) {}
+
+  FluidPass<D, Numbers>* pass_;
+};
+
+/// A density beyond the range, PPs per rcut^D: its index, if there is one.
+std::optional<std::uint32_t> find_out_of_range(std::span<const double> density, double rest_density);
 
 /// The pass in the precision of the model.
 template <int D>
-using ModelPass = std::variant<FluidPass<D, DoublePairs<D>>, FluidPass<D, SinglePairs<D>>>;
+using ModelPass = std::variant<FluidPass<D, DoubleLanes<D>>, FluidPass<D, SingleLanes<D>>>;
 
 template <int D>
 ModelPass<D> make_pass(const Model<D>& model, int threads) {
-  if (model.terms.single) return FluidPass<D, SinglePairs<D>>(model, threads);
-  return FluidPass<D, DoublePairs<D>>(model, threads);
+  if (model.terms.single) return FluidPass<D, SingleLanes<D>>(model, threads);
+  return FluidPass<D, DoubleLanes<D>>(model, threads);
 }
 
 }  // namespace mappm

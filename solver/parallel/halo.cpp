@@ -31,7 +31,7 @@ Halo<D>::Halo(const Model<D>& model, const Domains<D>& domains, const Communicat
     image_reach_.push_back(widened(model, image.region, 1.0));
     NeededRegion<D>& needed = needed_.emplace_back();
     needed.region = widened(model, image.region, 1.0 + skin);
-    if (partners_[static_cast<std::size_t>(image.partner)] == communicator.rank()) needed.own_shift = image.shift;
+    if (partners_[static_cast<std::size_t>(image.partner)] == communicator.rank()) needed.image_shift = image.shift;
     image_solid_reach_.push_back(widened(model, image.region, solid_margin(model)));
   }
 }
@@ -64,26 +64,26 @@ Vec<D, double> Halo<D>::in_frame(Vec<D, double> x) const {
 }
 
 template <int D>
-void Halo<D>::begin_exchange(State<D>& state, Residents<D>& residents, Stopwatch& watch) {
+void Halo<D>::begin_exchange(State<D>& state, Residents<D>& residents, PhaseTimes& times) {
   // Alone, a process ends its stay when it must.
-  const std::uint64_t plan = traffic_.neighbours > 0 ? residents.plan(state.step) : Residents<D>::never;
-  if (!residents.lasts()) residents.leave(state.fluid);
+  const std::uint64_t plan = traffic_.neighbours > 0 ? residents.schedule().plan(state.step) : StaySchedule::never;
+  if (!residents.schedule().lasts()) residents.leave(state.fluid);
   for (Buffer& buffer : out_) put(buffer, plan);
   pack_fluid(state.fluid, residents);
-  watch.end(Phase::exchange);
+  times.end(Phase::exchange);
   pack_solids(state.solids);
-  watch.end(Phase::copies);
+  times.end(Phase::copies);
   send_messages();
-  watch.end(Phase::exchange);
+  times.end(Phase::exchange);
 }
 
 template <int D>
-bool Halo<D>::end_exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch) {
+bool Halo<D>::end_exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, PhaseTimes& times) {
   receive_messages();
   std::vector<BufferReader> readers(in_.begin(), in_.end());
-  for (BufferReader& reader : readers) residents.fall_in(state.step, reader.get<std::uint64_t>());
+  for (BufferReader& reader : readers) residents.schedule().adopt_plan(state.step, reader.get<std::uint64_t>());
   const std::vector<BufferReader> of_fluid = readers;
-  const bool stay = residents.lasts() && residents.refresh(state.fluid, readers);
+  const bool stay = residents.schedule().lasts() && residents.refresh(state.fluid, readers);
   if (!stay) {
     if (residents.staying()) {
       residents.leave(state.fluid);
@@ -93,9 +93,9 @@ bool Halo<D>::end_exchange(State<D>& state, Residents<D>& residents, std::vector
     readers = of_fluid;
     for (BufferReader& reader : readers) unpack_fluid(reader, state.fluid);
   }
-  watch.end(Phase::exchange);
+  times.end(Phase::exchange);
   unpack_solids(readers, state.solids, copies);
-  watch.end(Phase::copies);
+  times.end(Phase::copies);
   return stay;
 }
 
@@ -103,7 +103,7 @@ bool Halo<D>::end_exchange(State<D>& state, Residents<D>& residents, std::vector
 /// where those that stay are already.
 template <int D>
 void Halo<D>::choose(FluidParticles<D>& fluid, bool own_images_alone) {
-  const auto is_own = [](const NeededRegion<D>& needed) { return needed.own_shift.has_value(); };
+  const auto is_own = [](const NeededRegion<D>& needed) { return needed.image_shift.has_value(); };
   if (own_images_alone && std::ranges::none_of(needed_, is_own)) return;
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     Vec<D, double> x = fluid.position(i);
@@ -111,7 +111,7 @@ void Halo<D>::choose(FluidParticles<D>& fluid, bool own_images_alone) {
     x = in_frame(x);
     for (int axis = 0; axis < D; ++axis) fluid.x(axis)[i] = x[axis];
     for (std::size_t n = 0; n < images_.size(); ++n) {
-      if (own_images_alone && !needed_[n].own_shift) continue;
+      if (own_images_alone && !needed_[n].image_shift) continue;
       if (needed_[n].region.contains(x)) selected_[n].push_back(static_cast<std::uint32_t>(i));
     }
   }
@@ -124,7 +124,7 @@ void Halo<D>::pack_fluid(FluidParticles<D>& fluid, const Residents<D>& residents
   for (auto& chosen : selected_) chosen.clear();
   if (residents.staying()) {
     for (std::size_t n = 0; n < images_.size(); ++n)
-      if (!needed_[n].own_shift) residents.select(fluid, n, selected_[n]);
+      if (!needed_[n].image_shift) residents.select(fluid, n, selected_[n]);
   } else {
     choose(fluid, false);
   }
@@ -154,16 +154,16 @@ template <int D>
 void Halo<D>::add_own_images(FluidParticles<D>& fluid) const {
   std::size_t first = fluid.size(), size = first;
   for (std::size_t n = 0; n < images_.size(); ++n)
-    if (needed_[n].own_shift) size += selected_[n].size();
+    if (needed_[n].image_shift) size += selected_[n].size();
   fluid.resize(size);
   for (std::size_t n = 0; n < images_.size(); ++n) {
-    if (!needed_[n].own_shift) continue;
+    if (!needed_[n].image_shift) continue;
     const auto add = [&](auto& values, const auto& shift) {
       for (std::size_t k = 0; k < selected_[n].size(); ++k) values[first + k] = values[selected_[n][k]] + shift;
     };
     add(fluid.id, std::uint64_t{0});
     for (int f = 0; f < FluidParticles<D>::field_count; ++f)
-      add(fluid.field[static_cast<std::size_t>(f)], f < D ? (*needed_[n].own_shift)[f] : 0.0);
+      add(fluid.field[static_cast<std::size_t>(f)], f < D ? (*needed_[n].image_shift)[f] : 0.0);
     first += selected_[n].size();
   }
 }
@@ -232,7 +232,7 @@ void Halo<D>::begin_densities(const FluidParticles<D>& fluid, const Residents<D>
   residents.copy_densities(fluid, density);
   for (std::size_t n = 0; n < images_.size(); ++n) {
     selected_[n].clear();
-    if (needed_[n].own_shift) continue;
+    if (needed_[n].image_shift) continue;
     residents.select(fluid, n, selected_[n]);
     std::erase_if(selected_[n], [&](std::uint32_t i) { return !image_reach_[n].contains(fluid.position(i)); });
   }
@@ -275,11 +275,10 @@ void Halo<D>::put_frozen_densities(const PlacedSolids<D>& solids) {
 }
 
 template <int D>
-void Halo<D>::end_densities(const FluidParticles<D>& fluid, Residents<D>& residents, std::span<double> density,
-                            PlacedSolids<D>& solids) {
+void Halo<D>::end_densities(Residents<D>& residents, std::span<double> density, PlacedSolids<D>& solids) {
   receive_messages();
   std::vector<BufferReader> readers(in_.begin(), in_.end());
-  for (std::size_t n = 0; n < readers.size(); ++n) residents.take_densities(fluid, n, readers[n], density);
+  for (std::size_t n = 0; n < readers.size(); ++n) residents.take_densities(n, readers[n], density);
   take_frozen_densities(readers, solids);
 }
 

@@ -14,9 +14,9 @@
 #include "parallel/communicator.hpp"
 #include "parallel/domains.hpp"
 #include "parallel/message.hpp"
+#include "parallel/phase_times.hpp"
 #include "parallel/placed_solids.hpp"
 #include "parallel/residents.hpp"
-#include "parallel/stopwatch.hpp"
 #include "particles/engine.hpp"
 #include "particles/solid_step.hpp"
 
@@ -45,21 +45,20 @@ class Halo {
   /// a stay. On return it holds its particles and, as far out as rcut + skin, ghosts, all in its frame, and its solids;
   /// `copies` holds copies of solids. True if the stay of the PPs goes on, in which a ghost that has left that margin
   /// may be an old one; otherwise it has ended, and they are in any order. The message itself counts as one of PPs.
-  bool exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch) {
-    begin_exchange(state, residents, watch);
-    return end_exchange(state, residents, copies, watch);
+  bool exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, PhaseTimes& times) {
+    begin_exchange(state, residents, times);
+    return end_exchange(state, residents, copies, times);
   }
   /// The same in two parts. Between them the messages are on their way, and a stay that lasts may still end.
-  void begin_exchange(State<D>& state, Residents<D>& residents, Stopwatch& watch);
-  bool end_exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, Stopwatch& watch);
+  void begin_exchange(State<D>& state, Residents<D>& residents, PhaseTimes& times);
+  bool end_exchange(State<D>& state, Residents<D>& residents, std::vector<Solid<D>>& copies, PhaseTimes& times);
 
   /// In a step, after `settle` where the PPs have not stayed: densities of what lies in this region go to those who
   /// have ghosts of it: density[i] of PP i, and of the FPs.
   void begin_densities(const FluidParticles<D>& fluid, const Residents<D>& residents, std::span<double> density,
                        const PlacedSolids<D>& solids);
   /// Those of ghosts, from others.
-  void end_densities(const FluidParticles<D>& fluid, Residents<D>& residents, std::span<double> density,
-                     PlacedSolids<D>& solids);
+  void end_densities(Residents<D>& residents, std::span<double> density, PlacedSolids<D>& solids);
 
   /// Delivers reports to the owners of the solids; returns those for solids owned here.
   std::vector<HomeReport<D>> send_home(const std::vector<Solid<D>>& copies, std::vector<HomeReport<D>>&& reports);

@@ -1,4 +1,4 @@
-// Lists of pairs of PPs that serve for several steps: while the PPs keep their places, only distances are worked out
+// Lists of pairs of PPs that serve for several steps: while the PPs keep their slots, only distances are worked out
 // anew.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace mappm {
 
-/// Of each centre, a place, the blocks that hold partners. All lanes of a block count unless some are named; in the
+/// Of each centre, a slot, the blocks that hold partners. All lanes of a block count unless some are named; in the
 /// centre's own block only those behind it.
 template <int D, class Numbers>
 class KeptLists {
@@ -28,7 +28,7 @@ class KeptLists {
   /// Adds those of the `near` blocks of a centre that are `chosen`; none occurs twice. Where `named`, only some lanes
   /// of them count, one a bit: partners(block).
   template <class Chosen, class NamedBlocks, class LanesOf>
-  MAPPM_INLINE void add(std::uint32_t place, std::span<const std::uint32_t> near, const Chosen& chosen,
+  MAPPM_INLINE void add(std::uint32_t slot, std::span<const std::uint32_t> near, const Chosen& chosen,
                         const NamedBlocks& named, const LanesOf& partners) {
     const std::size_t first = blocks_.size();
     reserve_tightly(blocks_, first + near.size());
@@ -44,7 +44,7 @@ class KeptLists {
       blocks_[end++] = one;
     }
     blocks_.resize(end);
-    if (end > first) centres_.push_back({place, static_cast<std::uint32_t>(end)});
+    if (end > first) centres_.push_back({slot, static_cast<std::uint32_t>(end)});
   }
 
   /// All pairs, with the excess of Numbers::ListRounding on what blocks receive; `squares` is scratch of the caller's
@@ -54,9 +54,9 @@ class KeptLists {
     for_each_walk(
         numbers, blocks.data(), squares, [&](auto&& walk) __attribute__((always_inline)) {
           sum_blocks<Kernel, transport, false, typename Numbers::ListRounding, D>(
-              numbers, blocks.data(), walk, [&](std::uint32_t place) { return blocks.centre(place); },
+              numbers, blocks.data(), walk, [&](std::uint32_t slot) { return blocks.centre(slot); },
               [](std::uint32_t) { return UnitFactor{}; },
-              [&](std::uint32_t place, const auto& sums) { blocks.add(place, sums); });
+              [&](std::uint32_t slot, const auto& sums) { blocks.add(slot, sums); });
         });
   }
   /// The same of the densities.
@@ -65,10 +65,10 @@ class KeptLists {
     for_each_walk(
         numbers, blocks.data(), squares, [&](auto&& walk) __attribute__((always_inline)) {
           sum_densities_of_blocks<Kernel, typename Numbers::ListRounding, D>(
-              numbers, blocks.data(), walk, [&](std::uint32_t place, auto sum) { blocks.add_density(place, sum); });
+              numbers, blocks.data(), walk, [&](std::uint32_t slot, auto sum) { blocks.add_density(slot, sum); });
         });
   }
-  /// Calls visit(place, partner) for every pair that the lists hold, within the cutoff or not.
+  /// Calls visit(slot, partner) for every pair that the lists hold, within the cutoff or not.
   template <class Visit>
   void for_each_pair(Visit&& visit) const {
     std::size_t n = 0;
@@ -79,14 +79,14 @@ class KeptLists {
         if (named != named_.end() && named->entry == n) partners = (named++)->partners;
         for (std::uint32_t lane = 0; lane < lanes; ++lane) {
           const std::uint32_t partner = blocks_[n] * lanes + lane;
-          const bool own = blocks_[n] == centre.particle / lanes;
-          if ((partners >> lane & 1) != 0 && (!own || partner > centre.particle)) visit(centre.particle, partner);
+          const bool same = blocks_[n] == centre.particle / lanes;
+          if ((partners >> lane & 1) != 0 && (!same || partner > centre.particle)) visit(centre.particle, partner);
         }
       }
   }
 
   struct Centre {
-    std::uint32_t particle, end;  // the place of the centre, and where its blocks end
+    std::uint32_t particle, end;  // the slot of the centre, and where its blocks end
   };
   /// Calls visit(centres, base) for all centres, some at once. Block n of theirs, n >= base, has its squared distances
   /// in `squares`, entry n - base.
@@ -144,19 +144,19 @@ class KeptLists {
     const Numbers same = numbers;  // as far as the compiler sees, what is stored below could change another's
     const std::uint32_t* const entries = blocks_.data();
     for (const Centre& centre : centres) {
-      const std::uint32_t own = centre.particle / lanes, lane = centre.particle % lanes;
-      Vec<D, typename Numbers::Place> x;
-      for (int axis = 0; axis < D; ++axis) x[axis] = blocks[own].x[axis][lane];
+      const std::uint32_t centre_block = centre.particle / lanes, lane = centre.particle % lanes;
+      Vec<D, typename Numbers::Coordinate> x;
+      for (int axis = 0; axis < D; ++axis) x[axis] = blocks[centre_block].x[axis][lane];
       const std::size_t first = n;
       for (const std::size_t end = centre.end; n < end; ++n) {
         const Vec<D, RealLanes> r = detail::separation_of_block<false>(same, blocks[entries[n]], x);
         dot(r, r).copy_to(squares + (n - base) * lanes, std::experimental::vector_aligned);
       }
-      if (blocks_[first] == own) {
-        Real* const of_own = squares + (first - base) * lanes;
+      if (blocks_[first] == centre_block) {
+        Real* const of_centre = squares + (first - base) * lanes;
         const RealLanes beside = RealLanes(static_cast<Real>(lane + 1)) - lane_numbers<RealLanes>();
-        larger(RealLanes(of_own, std::experimental::vector_aligned), beside)
-            .copy_to(of_own, std::experimental::vector_aligned);
+        larger(RealLanes(of_centre, std::experimental::vector_aligned), beside)
+            .copy_to(of_centre, std::experimental::vector_aligned);
       }
       for (; named != named_.end() && named->entry < centre.end; ++named)
         for (std::uint32_t k = 0; k < lanes; ++k)

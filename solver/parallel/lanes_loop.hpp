@@ -37,9 +37,8 @@ MAPPM_INLINE PairResult<D, Sum> total(const PairResult<D, SumLanes<Sum>>& sums) 
 
 /// Separation of a block of lanes and a centre, from j to i of the law. With `lanes_first` the lanes are i.
 template <bool lanes_first, int D, class Numbers>
-MAPPM_INLINE Vec<D, typename Numbers::RealLanes> separation_of_block(const Numbers& numbers,
-                                                                     const PairBlock<D, Numbers>& block,
-                                                                     const Vec<D, typename Numbers::Place>& centre) {
+MAPPM_INLINE Vec<D, typename Numbers::RealLanes> separation_of_block(
+    const Numbers& numbers, const PairBlock<D, Numbers>& block, const Vec<D, typename Numbers::Coordinate>& centre) {
   Vec<D, typename Numbers::RealLanes> d;
   for (int axis = 0; axis < D; ++axis) {
     const auto x = load_lanes(block.x[axis]);
@@ -63,7 +62,7 @@ MAPPM_INLINE void pair_block(const Numbers& numbers, PairBlock<D, Numbers>& bloc
   pair.v2 = RealLanes(centre.volume.v2) + load_lanes(block.v2);
   pair.pv2 = RealLanes(centre.volume.pv2) + load_lanes(block.pv2);
   const auto given = fluid_pair<Kernel, transport, Rounding>(numbers.law(), pair, r, q, beta(r));
-  const auto wrapped = [](const auto& lanes) { return lanes_of<Wrapping<typename Numbers::Sum>>(lanes); };
+  const auto wrapped = [](const auto& lanes) { return converted<Wrapping<typename Numbers::Sum>>(lanes); };
   for (int axis = 0; axis < D; ++axis) {
     const auto impulse = lanes_first ? wrapped(given.impulse[axis]) : -wrapped(given.impulse[axis]);
     add_to(block.impulse[axis], impulse);
@@ -125,7 +124,7 @@ template <int D, class Numbers>
 class PartnerLists {
   using Real = typename Numbers::Real;
   using RealLanes = typename Numbers::RealLanes;
-  using Places = Vec<D, typename Numbers::Place>;
+  using Position = Vec<D, typename Numbers::Coordinate>;
 
  public:
   void clear() {
@@ -134,9 +133,9 @@ class PartnerLists {
   }
   bool is_full() const { return size_ >= detail::blocks_at_once<Numbers>; }
 
-  /// Adds a particle with its ranges of places: range(n) for n < count.
+  /// Adds a particle with its ranges of slots: range(n) for n < count.
   template <class RangeOf>
-  MAPPM_INLINE void add(std::uint32_t particle, const Places& x, std::size_t count, RangeOf&& range) {
+  MAPPM_INLINE void add(std::uint32_t particle, const Position& x, std::size_t count, RangeOf&& range) {
     make_room(size_ + count * written);
     const auto owner = static_cast<std::uint32_t>(centres_.size());
     const Columns columns = this->columns();
@@ -181,7 +180,7 @@ class PartnerLists {
       square.copy_to(columns.distance + n * lanes, std::experimental::vector_aligned);
       columns.used[n] = any_below(square, Real(1)) ? 1 : 0;
     }
-    // By itself: in the loop above every load would wait for the place of the store before it.
+    // By itself: in the loop above every load would wait for the address of the store before it.
     std::size_t kept = 0, n = 0;
     for (Centre& centre : centres_) {
       for (; n < centre.end; ++n) {
@@ -213,7 +212,7 @@ class PartnerLists {
   static constexpr std::uint32_t written = std::max(8u, lanes);  // blocks at once: longer ranges are rare
   struct Centre {
     std::uint32_t particle, end;  // and where its blocks end
-    Places x;
+    Position x;
   };
   /// Of each entry its block, its centre, its first and its last lane that is a partner, and distances.
   struct Columns {
@@ -243,7 +242,7 @@ class PartnerLists {
   }
   /// The ranges from number n on, of any length.
   template <class RangeOf>
-  [[gnu::noinline]] void add_rest(std::uint32_t particle, const Places& x, std::size_t count, RangeOf&& range,
+  [[gnu::noinline]] void add_rest(std::uint32_t particle, const Position& x, std::size_t count, RangeOf&& range,
                                   std::size_t n) {
     const auto owner = static_cast<std::uint32_t>(centres_.size());
     for (; n < count; ++n) {
@@ -316,7 +315,7 @@ MAPPM_INLINE void sum_densities_of_blocks(const Numbers& numbers, PairBlock<D, N
         sum = detail::SumLanes<Sum>(static_cast<Wrapping<Sum>>(-Rounding::excess * count));
       },
       [&](std::uint32_t block, const RealLanes& q) __attribute__((always_inline)) {
-        const auto given = lanes_of<Wrapping<Sum>>(pair_density<Kernel, Rounding, D>(numbers.law(), q));
+        const auto given = converted<Wrapping<Sum>>(pair_density<Kernel, Rounding, D>(numbers.law(), q));
         detail::add_to(blocks[block].density, given);
         sum += given;
       },

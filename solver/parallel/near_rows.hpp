@@ -40,7 +40,7 @@ template <int D>
 class NearRows {
  public:
   /// The rows at `offsets` from `row` that lie in the grid; `inner`: only those, and of them the cells, in the region.
-  /// Ranges are given in places of `blocks`.
+  /// Ranges are given in slots of `blocks`.
   template <class Blocks>
   void fit(const CellGrid<D>& grid, const Blocks& blocks, const std::vector<Vec<D, int>>& offsets,
            const Vec<D, int>& row, bool inner) {
@@ -67,14 +67,14 @@ class NearRows {
 
   std::size_t count() const { return rows_.size(); }
 
-  /// For places in this box, its borders among them.
+  /// For positions in this box, its borders among them.
   MAPPM_INLINE void find(const CellGrid<D>& grid, const Region<D>& box) {
-    const double first = grid.place(0, box.low[0]), last = grid.place(0, box.high[0]);
+    const double first = grid.fractional_coordinate(0, box.low[0]), last = grid.fractional_coordinate(0, box.high[0]);
     const double cells_per_reach = 1.0 / grid.width(0);
     Region<D> inside;  // of the row, from its lower borders
     for (int axis = 1; axis < D; ++axis) {
-      inside.low[axis] = (grid.place(axis, box.low[axis]) - row_[axis]) * grid.width(axis);
-      inside.high[axis] = (grid.place(axis, box.high[axis]) - row_[axis]) * grid.width(axis);
+      inside.low[axis] = (grid.fractional_coordinate(axis, box.low[axis]) - row_[axis]) * grid.width(axis);
+      inside.high[axis] = (grid.fractional_coordinate(axis, box.high[axis]) - row_[axis]) * grid.width(axis);
     }
     for (std::size_t n = 0; n < rows_.size(); n += lane_count) {
       Lanes left = 1.0 + rounding;  // square of half the chord
@@ -91,7 +91,7 @@ class NearRows {
     }
   }
 
-  /// Places [first, end) of a row that hold all those within the reach of the box, and others. There may be none, with
+  /// Slots [first, end) of a row that hold all those within the reach of the box, and others. There may be none, with
   /// end <= first.
   struct Range {
     std::uint32_t first, end;
@@ -103,10 +103,10 @@ class NearRows {
   }
 
  private:
-  static constexpr double rounding = 1e-6;  // far more than that of a place, in cells and in reaches
+  static constexpr double rounding = 1e-6;  // far more than that of a coordinate, in cells and in reaches
   struct Row {
     std::size_t cells;  // its first one
-    std::uint32_t gap;  // place of a particle less its index
+    std::uint32_t gap;  // slot of a particle less its index
   };
   Vec<D, int> row_;
   double lowest_ = 0.0, highest_ = 0.0;

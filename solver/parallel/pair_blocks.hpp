@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "base/column.hpp"
+#include "parallel/lane_numbers.hpp"
 #include "particles/cell_grid.hpp"
 #include "particles/model.hpp"
-#include "physics/pair_numbers.hpp"
 
 namespace mappm {
 
 template <int D, class Numbers>
 struct alignas(sizeof(typename Numbers::RealLanes)) PairBlock {
   static constexpr int lanes = block_lanes<Numbers>;
-  typename Numbers::Place x[D][lanes];
+  typename Numbers::Coordinate x[D][lanes];
   typename Numbers::Sum density[lanes];
   typename Numbers::Real v[D][lanes];
   typename Numbers::Real v2[lanes], pv2[lanes];
@@ -26,12 +26,12 @@ struct alignas(sizeof(typename Numbers::RealLanes)) PairBlock {
 /// The one particle of a loop over blocks: a PP or an FP.
 template <int D, class Numbers>
 struct PairCentre {
-  Vec<D, typename Numbers::Place> x;
+  Vec<D, typename Numbers::Coordinate> x;
   Vec<D, typename Numbers::Real> v;
   VolumeTerms<typename Numbers::Real> volume;
 };
 
-/// All PPs in the order of a grid. Each plane of cells begins a block, so no two planes share one: a place is the index
+/// All PPs in the order of a grid. Each plane of cells begins a block, so no two planes share one: a slot is the index
 /// of a PP in that order and the gaps before it. In later steps the PPs may have left their cells.
 template <int D, class Numbers>
 class PairBlocks {
@@ -83,7 +83,7 @@ class PairBlocks {
           x[axis] = load_lanes(fluid.x(axis).data() + i + lane);
           v[axis] = load_lanes(fluid.v(axis).data() + i + lane);
         }
-        lay(numbers, block * lanes + lane, x, v);
+        set_motion(numbers, block * lanes + lane, x, v);
       }
       // Lanes of a gap are nobody's partners: they lie far from the plane.
       auto& slow = blocks_[block].x[D - 1];
@@ -96,16 +96,18 @@ class PairBlocks {
   };
   const Held& held(std::uint32_t block) const { return held_[block]; }
 
-  /// The PP at `place`, or as many from there on as there are lanes of the state: where they are, with sums of zero.
+  /// Position (quanta) and velocity of the PP at `slot`, or of as many from there on as there are lanes of the state.
+  /// Their sums become zero.
   template <class Wide>
-  MAPPM_INLINE void lay(const Numbers& numbers, std::uint32_t place, const Vec<D, Wide>& x, const Vec<D, Wide>& v) {
+  MAPPM_INLINE void set_motion(const Numbers& numbers, std::uint32_t slot, const Vec<D, Wide>& x,
+                               const Vec<D, Wide>& v) {
     using Real = typename Numbers::Real;
-    const auto zero = lanes_of<Sum>(Wide(0.0));
-    Block& block = blocks_[place / lanes];
-    const std::uint32_t lane = place % lanes;
+    const auto zero = converted<Sum>(Wide(0.0));
+    Block& block = blocks_[slot / lanes];
+    const std::uint32_t lane = slot % lanes;
     for (int axis = 0; axis < D; ++axis) {
-      store_lanes(numbers.place(axis, x[axis]), &block.x[axis][lane]);
-      store_lanes(lanes_of<Real>(v[axis]), &block.v[axis][lane]);
+      store_lanes(numbers.coordinate(axis, x[axis]), &block.x[axis][lane]);
+      store_lanes(converted<Real>(v[axis]), &block.v[axis][lane]);
       store_lanes(zero, &block.impulse[axis][lane]);
       store_lanes(zero, &block.shift[axis][lane]);
     }
@@ -115,22 +117,22 @@ class PairBlocks {
   }
   /// Their volumes and pressures, by their densities (PPs per rcut^D).
   template <class Wide>
-  MAPPM_INLINE void set_density(const Model<D>& model, std::uint32_t place, const Wide& density) {
+  MAPPM_INLINE void set_density(const Model<D>& model, std::uint32_t slot, const Wide& density) {
     using Real = typename Numbers::Real;
-    Block& block = blocks_[place / lanes];
-    const std::uint32_t lane = place % lanes;
+    Block& block = blocks_[slot / lanes];
+    const std::uint32_t lane = slot % lanes;
     const auto volume = volume_terms(density, model.rest_density, 1.0, model.background);
-    store_lanes(lanes_of<Real>(volume.v2), &block.v2[lane]);
-    store_lanes(lanes_of<Real>(volume.pv2), &block.pv2[lane]);
+    store_lanes(converted<Real>(volume.v2), &block.v2[lane]);
+    store_lanes(converted<Real>(volume.pv2), &block.pv2[lane]);
   }
 
   const Block& operator[](std::uint32_t block) const { return blocks_[block]; }
   Block* data() { return blocks_.data(); }
   std::size_t size() const { return blocks_.size(); }
-  /// The block of a place alone, with sums of zero.
-  PairBlocks one(std::uint32_t place) const {
+  /// The block of a slot alone, with sums of zero.
+  PairBlocks one(std::uint32_t slot) const {
     PairBlocks result;
-    Block& block = result.blocks_.emplace_back(blocks_[place / lanes]);
+    Block& block = result.blocks_.emplace_back(blocks_[slot / lanes]);
     for (int axis = 0; axis < D; ++axis) {
       std::ranges::fill(block.impulse[axis], 0);
       std::ranges::fill(block.shift[axis], 0);
@@ -143,14 +145,14 @@ class PairBlocks {
   }
   /// Place of a PP of a plane less its index.
   std::uint32_t gap(int plane) const { return gaps_[static_cast<std::size_t>(plane)]; }
-  std::uint32_t place(std::uint32_t index) const {
+  std::uint32_t slot(std::uint32_t index) const {
     const auto plane = std::upper_bound(starts_.begin(), starts_.end(), index) - starts_.begin() - 1;
     return index + gap(static_cast<int>(plane));
   }
 
-  MAPPM_INLINE PairCentre<D, Numbers> centre(std::uint32_t place) const {
-    const Block& block = blocks_[place / lanes];
-    const std::uint32_t lane = place % lanes;
+  MAPPM_INLINE PairCentre<D, Numbers> centre(std::uint32_t slot) const {
+    const Block& block = blocks_[slot / lanes];
+    const std::uint32_t lane = slot % lanes;
     PairCentre<D, Numbers> centre;
     for (int axis = 0; axis < D; ++axis) {
       centre.x[axis] = block.x[axis][lane];
@@ -159,9 +161,9 @@ class PairBlocks {
     centre.volume = {block.v2[lane], block.pv2[lane]};
     return centre;
   }
-  MAPPM_INLINE void add(std::uint32_t place, const PairResult<D, Sum>& given) {
-    Block& block = blocks_[place / lanes];
-    const std::uint32_t lane = place % lanes;
+  MAPPM_INLINE void add(std::uint32_t slot, const PairResult<D, Sum>& given) {
+    Block& block = blocks_[slot / lanes];
+    const std::uint32_t lane = slot % lanes;
     for (int axis = 0; axis < D; ++axis) {
       add_to(block.impulse[axis][lane], given.impulse[axis]);
       add_to(block.shift[axis][lane], given.shift[axis]);
@@ -169,28 +171,28 @@ class PairBlocks {
     add_to(block.shear[lane], given.shear);
     add_to(block.agitation[lane], given.agitation);
   }
-  MAPPM_INLINE void add_density(std::uint32_t place, Sum given) {
-    add_to(blocks_[place / lanes].density[place % lanes], given);
+  MAPPM_INLINE void add_density(std::uint32_t slot, Sum given) {
+    add_to(blocks_[slot / lanes].density[slot % lanes], given);
   }
-  /// Tells which blocks the lists will add to, one by one, with the excess of their rounding, in each of the two
-  /// passes. Valid until all are filled.
-  void expect(std::span<const std::uint32_t> blocks) {
+  /// Counts what lists that are kept add to the sums of these blocks in each of the two passes, once an entry, so that
+  /// the excess of the rounding can be taken off. Valid until all blocks are filled.
+  void count_contributions(std::span<const std::uint32_t> blocks) {
     if constexpr (Numbers::ListRounding::excess != 0)
       for (const std::uint32_t block : blocks) ++contributions_[block];
   }
-  PairResult<D, Sum> sums(std::uint32_t place) const {
-    return sums_of(place, [](const Sum* sum) { return static_cast<Wrapping<Sum>>(*sum); });
+  PairResult<D, Sum> sums(std::uint32_t slot) const {
+    return sums_of(slot, [](const Sum* sum) { return static_cast<Wrapping<Sum>>(*sum); });
   }
-  /// Sum of densities of the PP at a place, or of as many from there on as there are lanes of the state.
-  Sum density(std::uint32_t place) const {
-    return density_of(place, [](const Sum* sum) { return static_cast<Wrapping<Sum>>(*sum); });
+  /// Sum of densities of the PP at a slot, or of as many from there on as there are lanes of the state.
+  Sum density(std::uint32_t slot) const {
+    return density_of(slot, [](const Sum* sum) { return static_cast<Wrapping<Sum>>(*sum); });
   }
-  MAPPM_INLINE auto density_of_lanes(std::uint32_t place) const {
-    return density_of(place, [](const Sum* sums) { return lanes_of<Wrapping<Sum>>(load_as_many(sums)); });
+  MAPPM_INLINE auto density_of_lanes(std::uint32_t slot) const {
+    return density_of(slot, [](const Sum* sums) { return converted<Wrapping<Sum>>(load_as_many(sums)); });
   }
-  /// Of as many PPs from `place` on as there are lanes of the state.
-  MAPPM_INLINE auto sums_of_lanes(std::uint32_t place) const {
-    return sums_of(place, [](const Sum* sums) { return lanes_of<Wrapping<Sum>>(load_as_many(sums)); });
+  /// Of as many PPs from `slot` on as there are lanes of the state.
+  MAPPM_INLINE auto sums_of_lanes(std::uint32_t slot) const {
+    return sums_of(slot, [](const Sum* sums) { return converted<Wrapping<Sum>>(load_as_many(sums)); });
   }
 
  private:
@@ -200,24 +202,24 @@ class PairBlocks {
     sum = static_cast<Sum>(static_cast<Wrapping<Sum>>(sum) + static_cast<Wrapping<Sum>>(more));
   }
   template <class Load>
-  MAPPM_INLINE auto density_of(std::uint32_t place, Load&& load) const {
-    const auto sum = load(&blocks_[place / lanes].density[place % lanes]);
-    return lanes_of<Sum>(sum - std::decay_t<decltype(sum)>(excess_of(place / lanes)));
+  MAPPM_INLINE auto density_of(std::uint32_t slot, Load&& load) const {
+    const auto sum = load(&blocks_[slot / lanes].density[slot % lanes]);
+    return converted<Sum>(sum - std::decay_t<decltype(sum)>(excess_of(slot / lanes)));
   }
   /// load(from): sums from there on, as numbers that wrap.
   template <class Load>
-  MAPPM_INLINE auto sums_of(std::uint32_t place, Load&& load) const {
-    const Block& block = blocks_[place / lanes];
-    const std::uint32_t lane = place % lanes;
+  MAPPM_INLINE auto sums_of(std::uint32_t slot, Load&& load) const {
+    const Block& block = blocks_[slot / lanes];
+    const std::uint32_t lane = slot % lanes;
     using Wide = decltype(load(block.density));
-    const auto excess = Wide(excess_of(place / lanes)), of_shift = shifts_ ? excess : Wide(0);
-    PairResult<D, decltype(lanes_of<Sum>(excess))> sums;
+    const auto excess = Wide(excess_of(slot / lanes)), of_shift = shifts_ ? excess : Wide(0);
+    PairResult<D, decltype(converted<Sum>(excess))> sums;
     for (int axis = 0; axis < D; ++axis) {  // partners received them with the other sign
-      sums.impulse[axis] = lanes_of<Sum>(load(&block.impulse[axis][lane]) + excess);
-      sums.shift[axis] = lanes_of<Sum>(load(&block.shift[axis][lane]) + of_shift);
+      sums.impulse[axis] = converted<Sum>(load(&block.impulse[axis][lane]) + excess);
+      sums.shift[axis] = converted<Sum>(load(&block.shift[axis][lane]) + of_shift);
     }
-    sums.shear = lanes_of<Sum>(load(&block.shear[lane]) - of_shift);
-    sums.agitation = lanes_of<Sum>(load(&block.agitation[lane]) - of_shift);
+    sums.shear = converted<Sum>(load(&block.shear[lane]) - of_shift);
+    sums.agitation = converted<Sum>(load(&block.agitation[lane]) - of_shift);
     return sums;
   }
   Wrapping<Sum> excess_of(std::uint32_t block) const {
@@ -229,7 +231,7 @@ class PairBlocks {
 
   bool shifts_ = false;                       // whether there are any
   std::vector<std::uint32_t> contributions_;  // that lists make to each block in one sum
-  std::vector<std::uint32_t> starts_, gaps_;  // of each plane: its first index; its places less its indices
+  std::vector<std::uint32_t> starts_, gaps_;  // of each plane: its first index; its slots less its indices
   std::vector<Held> held_;                    // of each block
   Column<Block> blocks_;
 };

@@ -35,10 +35,10 @@ class CellGrid {
     start_.assign(cells + 1, 0);
   }
 
-  /// Place on one axis in cells from the start of the margin: where rounding does not matter, its floor is
+  /// Coordinate on one axis, in cells from the start of the margin: where rounding does not matter, its floor is
   /// `coordinate`.
   template <class Real>
-  Real place(int axis, const Real& x) const {
+  Real fractional_coordinate(int axis, const Real& x) const {
     return (x - region_.low[axis]) * scale_[axis] + static_cast<double>(margin_[axis]);
   }
 

@@ -43,9 +43,9 @@ class CellLevels {
     Level& level = levels_[static_cast<std::size_t>(level_of(radius))];
     Vec<D, int> cell;
     for (int axis = 0; axis < D; ++axis) cell[axis] = coordinate(level, axis, x[axis]);
-    const std::size_t place = index(level, cell);
-    if (level.cells[place].empty()) level.used.push_back(place);
-    level.cells[place].push_back(body);
+    const std::size_t flat = index(level, cell);
+    if (level.cells[flat].empty()) level.used.push_back(flat);
+    level.cells[flat].push_back(body);
     level.largest_radius = std::max(level.largest_radius, radius);
   }
 

@@ -10,7 +10,7 @@
 namespace mappm {
 
 /// Where a value left its range. Ordered by step, by what a step looks at first, and by id.
-struct FaultPlace {
+struct FaultOrigin {
   enum class What { fluid_density, frozen_density, fluid_motion, solid_motion };
 
   std::uint64_t step = 0;
@@ -18,7 +18,7 @@ struct FaultPlace {
   std::uint64_t id = 0;     // of the PP or the solid
   std::uint64_t index = 0;  // of the FP in its solid
 
-  auto operator<=>(const FaultPlace&) const = default;
+  auto operator<=>(const FaultOrigin&) const = default;
   /// The same order, entry by entry.
   std::array<std::uint64_t, 4> key() const { return {step, static_cast<std::uint64_t>(what), id, index}; }
 };
@@ -26,21 +26,21 @@ struct FaultPlace {
 class FirstFault {
  public:
   bool any() const { return !text_.empty(); }
-  const FaultPlace& place() const { return place_; }
+  const FaultOrigin& origin() const { return origin_; }
   /// Step, particle, value and likely cause; empty where there is no fault.
   const std::string& text() const { return text_; }
 
   /// Whether a fault there comes before what is known.
-  bool follows(const FaultPlace& place) const { return !any() || place < place_; }
+  bool follows(const FaultOrigin& origin) const { return !any() || origin < origin_; }
   /// Keeps the earlier of two. An empty text is no fault.
-  void note(const FaultPlace& place, std::string text) {
-    if (text.empty() || !follows(place)) return;
-    place_ = place;
+  void note(const FaultOrigin& origin, std::string text) {
+    if (text.empty() || !follows(origin)) return;
+    origin_ = origin;
     text_ = std::move(text);
   }
 
  private:
-  FaultPlace place_;
+  FaultOrigin origin_;
   std::string text_;
 };
 

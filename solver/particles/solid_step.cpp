@@ -263,15 +263,15 @@ ParticleStep<D> particle_step(const Model<D>& model, std::uint64_t step) {
 }
 
 template <int D>
-void note_density(const Model<D>& model, const FaultPlace& place, double density, FirstFault& first) {
-  if (is_in_range(density, model.rest_density) || !first.follows(place)) return;
-  const std::string where = place.what == FaultPlace::What::frozen_density
-                                ? fmt::format("solid {}, frozen particle {}", place.id, place.index)
-                                : fmt::format("particle {}", place.id);
-  first.note(place, fmt::format("step {}: {}: density {:.3g} times rest, outside {} to {}; the fluid tears or "
-                                "collapses there: raise the sound speed or resolve the gap",
-                                place.step, where, density / model.rest_density, lowest_density_ratio,
-                                highest_density_ratio));
+void note_density(const Model<D>& model, const FaultOrigin& origin, double density, FirstFault& first) {
+  if (is_in_range(density, model.rest_density) || !first.follows(origin)) return;
+  const std::string where = origin.what == FaultOrigin::What::frozen_density
+                                ? fmt::format("solid {}, frozen particle {}", origin.id, origin.index)
+                                : fmt::format("particle {}", origin.id);
+  first.note(origin, fmt::format("step {}: {}: density {:.3g} times rest, outside {} to {}; the fluid tears or "
+                                 "collapses there: raise the sound speed or resolve the gap",
+                                 origin.step, where, density / model.rest_density, lowest_density_ratio,
+                                 highest_density_ratio));
 }
 
 namespace {
@@ -309,9 +309,9 @@ std::string motion_message(RangeFault fault, std::uint64_t step, std::uint64_t i
 }  // namespace
 
 template <int D>
-void note_motion(RangeFault fault, const FaultPlace& place, const Vec<D, double>& v, const NeighbourSums<D>& sums,
+void note_motion(RangeFault fault, const FaultOrigin& origin, const Vec<D, double>& v, const NeighbourSums<D>& sums,
                  FirstFault& first) {
-  if (first.follows(place)) first.note(place, motion_message(fault, place.step, place.id, v, sums));
+  if (first.follows(origin)) first.note(origin, motion_message(fault, origin.step, origin.id, v, sums));
 }
 
 #define MAPPM_INSTANTIATE(D)                                                                                        \
@@ -320,8 +320,8 @@ void note_motion(RangeFault fault, const FaultPlace& place, const Vec<D, double>
   template void note_overlaps<D>(const Model<D>&, std::uint64_t, const std::vector<SolidLoad<D>>&, FirstOverlaps&); \
   template std::string finish_step<D>(const Model<D>&, std::uint64_t, Solid<D>&, SolidLoad<D>&&, Vec<D, Int128>&);  \
   template ParticleStep<D> particle_step<D>(const Model<D>&, std::uint64_t);                                        \
-  template void note_density<D>(const Model<D>&, const FaultPlace&, double, FirstFault&);                           \
-  template void note_motion<D>(RangeFault, const FaultPlace&, const Vec<D, double>&, const NeighbourSums<D>&,       \
+  template void note_density<D>(const Model<D>&, const FaultOrigin&, double, FirstFault&);                          \
+  template void note_motion<D>(RangeFault, const FaultOrigin&, const Vec<D, double>&, const NeighbourSums<D>&,      \
                                FirstFault&);
 MAPPM_INSTANTIATE(2)
 MAPPM_INSTANTIATE(3)

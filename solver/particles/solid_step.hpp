@@ -64,11 +64,11 @@ ParticleStep<D> particle_step(const Model<D>& model, std::uint64_t step);
 
 /// Notes a density, of a PP or an FP, that is out of range.
 template <int D>
-void note_density(const Model<D>& model, const FaultPlace& place, double density, FirstFault& first);
+void note_density(const Model<D>& model, const FaultOrigin& origin, double density, FirstFault& first);
 
 /// Notes what left its range when a PP of this velocity was moved by these sums.
 template <int D>
-void note_motion(RangeFault fault, const FaultPlace& place, const Vec<D, double>& v, const NeighbourSums<D>& sums,
+void note_motion(RangeFault fault, const FaultOrigin& origin, const Vec<D, double>& v, const NeighbourSums<D>& sums,
                  FirstFault& first);
 
 }  // namespace mappm

@@ -3,13 +3,14 @@
 //   rho_ij = W                                                                 density that each gives to the other
 //   F_ij   = G { (p_i V_i^2 + p_j V_j^2) r - beta mu (V_i^2 + V_j^2) v }        momentum that i gains per time
 //   u_ij   = kappa c h (V_i^2 + V_j^2) / (2 V_0) G r                           transport velocity of i
-//   s_ij   = (V_i^2 + V_j^2) / (2 V_0) G v^2, and q^4 times it                agitation and shear, which limit the transport
+//   s_ij   = (V_i^2 + V_j^2) / (2 V_0) G v^2, and q^4 times it                agitation and shear, which limit the
+//   transport
 //
 // The densities of both are summed first, at the same positions: pressure is a function of positions alone. Every term
 // is symmetric or antisymmetric in i and j to the last bit, and is rounded once to an integer.
 #pragma once
 
-#include "base/lanes.hpp"
+#include "base/numbers.hpp"
 #include "base/vec.hpp"
 #include "physics/kernel.hpp"
 
@@ -47,20 +48,9 @@ struct Rounded {
   using Sum = Fixed<Real>;
   template <class Real>
   MAPPM_INLINE static Fixed<Real> of(const Real& x) {
-    return to_fixed(x);
+    return nearest_fixed(x);
   }
   static constexpr std::uint64_t excess = 0;
-};
-
-/// As `Rounded`, but each contribution has an excess, that of its sum being as many times as much.
-struct RoundedWithExcess {
-  template <class Real>
-  using Sum = decltype(to_fixed_with_excess(Real()));
-  template <class Real>
-  MAPPM_INLINE static Sum<Real> of(const Real& x) {
-    return to_fixed_with_excess(x);
-  }
-  static constexpr std::uint64_t excess = rounding_excess;
 };
 
 template <int D, class Real>

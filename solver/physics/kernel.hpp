@@ -4,7 +4,7 @@
 // They take the pair distance already limited to q <= 1, so that a pair beyond the cutoff contributes exactly zero.
 #pragma once
 
-#include "base/lanes.hpp"
+#include "base/numbers.hpp"
 
 namespace mappm {
 

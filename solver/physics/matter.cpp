@@ -21,7 +21,7 @@ constexpr std::array<double, 6> gauss_nodes{0.12523340851146891547, 0.3678314989
 constexpr std::array<double, 6> gauss_weights{0.24914704581340278500, 0.23349253653835480876, 0.20316742672306592175,
                                               0.16007832854334622633, 0.10693932599531843096, 0.04717533638651182719};
 
-/// Bounds the cost: of more places where a slice of the union changes its form only every so many-th is kept.
+/// Bounds the cost: of more heights where a slice of the union changes its form only every so many-th is kept.
 constexpr std::size_t most_panels = 256;
 
 /// Where three balls meet in a point, a slice changes its form inside a panel: few panels are cut until they are as

@@ -3,12 +3,10 @@
 // a window some rcut wide, and summed in 32-bit integers of coarser quanta; the state keeps its own.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <limits>
 
 #include "base/fixed_point.hpp"
-#include "base/lanes.hpp"
+#include "base/numbers.hpp"
 #include "base/vec.hpp"
 #include "physics/fluid_pair.hpp"
 #include "physics/pseudo_particle.hpp"
@@ -27,14 +25,9 @@ struct PairPoint {
 template <int D>
 class DoublePairs {
  public:
-  using Real = double;                     // of the arithmetic
-  using Place = double;                    // a position as the lanes hold it
-  using Sum = std::int64_t;                // of contributions
-  using Rounding = Rounded;                // of each of them
-  using ListRounding = RoundedWithExcess;  // in lists that are kept
-  /// Extent of a block beyond which not all of its particles are told apart from those of a block nearby; rcut.
-  static constexpr double largest_extent = std::numeric_limits<double>::infinity();
-  using RealLanes = Lanes;
+  using Real = double;       // of the arithmetic
+  using Sum = std::int64_t;  // of contributions
+  using Rounding = Rounded;  // of each of them
 
   DoublePairs(const PairLaw<D>& law, double) : law_(law) {}
 
@@ -43,15 +36,7 @@ class DoublePairs {
   double seen(int, double x) const { return x; }
   /// Difference of two such, in quanta of the law.
   double difference(int, double quanta) const { return quanta; }
-  /// A position for lanes.
-  template <class Wide>
-  MAPPM_INLINE Wide place(int, const Wide& x) const {
-    return x;
-  }
-  MAPPM_INLINE static Lanes apart(const Lanes& a, const Lanes& b) { return a - b; }
-  /// A place more than rcut away from all that lie within a few rcut of a place, on one axis.
-  static double far_from(double place) { return place + 4.0 * box_quanta; }
-  /// Sums of one PP, or of lanes, in quanta of the state.
+  /// Sums of one PP, or of several where the integers are lanes, in quanta of the state.
   template <class Integer>
   MAPPM_INLINE NeighbourSums<D, Integer> sums(const PairResult<D, Integer>& given) const {
     return {given.impulse, given.shift, given.shear, given.agitation};
@@ -71,21 +56,16 @@ template <int D>
 class SinglePairs {
  public:
   using Real = float;
-  using Place = std::int32_t;
   using Sum = std::int32_t;
   using Rounding = Rounded;
-  using ListRounding = Rounded;
-  // Along x a window of 8 holds two such blocks, between them the reach of lists and a narrow cell, and that reach once
-  // more. Across, blocks lie in rows, which are not far wider than the reach.
-  static constexpr double largest_extent = 2.5;
-  using RealLanes = FloatLanes;
 
   SinglePairs(const PairLaw<D>& law, double rest_density) {
     for (int axis = 0; axis < D; ++axis) {
-      // 2^32 places are a window at least 8 rcut wide: in it, whichever image is taken, neighbours lie side by side.
-      while (place_[axis] * 0x1p32 * law.length[axis] < 8.0) place_[axis] *= 2.0;
-      law_.length[axis] = static_cast<float>(law.length[axis] * place_[axis]);
-      law_.shift[axis] = static_cast<float>(law.shift[axis] * impulse_ / place_[axis]);
+      // 2^32 quanta are a window at least 8 rcut wide: in it, whichever image is taken, neighbours lie side by
+      // side.
+      while (position_[axis] * 0x1p32 * law.length[axis] < 8.0) position_[axis] *= 2.0;
+      law_.length[axis] = static_cast<float>(law.length[axis] * position_[axis]);
+      law_.shift[axis] = static_cast<float>(law.shift[axis] * impulse_ / position_[axis]);
     }
     while (density_ * 0x1p31 * density_quantum < 4.0 * highest_density_ratio * rest_density) density_ *= 2.0;
     law_.force = static_cast<float>(law.force / impulse_);
@@ -94,28 +74,19 @@ class SinglePairs {
   }
 
   const PairLaw<D, float>& law() const { return law_; }
-  double seen(int axis, double x) const { return static_cast<double>(to_fixed(x / place_[axis])) * place_[axis]; }
-  float difference(int axis, double quanta) const { return static_cast<float>(quanta / place_[axis]); }
-  /// The low 32 bits of a position in units of a place: differences wrap, and are right within half a window.
-  template <class Wide>
-  MAPPM_INLINE auto place(int axis, const Wide& x) const {
-    return lanes_of<std::int32_t>(to_fixed(x * Wide(1.0 / place_[axis])));
-  }
-  MAPPM_INLINE static FloatLanes apart(const Int32Lanes& a, const Int32Lanes& b) {
-    return lanes_of<float>(wrapped_difference(a, b));
-  }
-  static std::int32_t far_from(std::int32_t place) {  // half a window, at least 4 rcut
-    return static_cast<std::int32_t>(static_cast<std::uint32_t>(place) + (std::uint32_t{1} << 31));
-  }
+  double seen(int axis, double x) const { return static_cast<double>(to_fixed(x / position_[axis])) * position_[axis]; }
+  float difference(int axis, double quanta) const { return static_cast<float>(quanta / position_[axis]); }
+  /// Position quanta of the state in one of the law.
+  double position_quanta(int axis) const { return position_[axis]; }
   /// Sums keep their momentum exactly: a quantum here is a whole number of those of the state.
   template <class Integer>
   MAPPM_INLINE auto sums(const PairResult<D, Integer>& given) const {
-    const auto widened = [](const Integer& sum) { return lanes_of<std::int64_t>(sum); };
+    const auto widened = [](const Integer& sum) { return converted<std::int64_t>(sum); };
     using Wide = decltype(widened(given.impulse[0]));
     NeighbourSums<D, Wide> sums;
     for (int axis = 0; axis < D; ++axis) {
       sums.impulse[axis] = widened(given.impulse[axis]) * Wide(static_cast<std::int64_t>(impulse_));
-      sums.shift[axis] = widened(given.shift[axis]) * Wide(static_cast<std::int64_t>(place_[axis]));
+      sums.shift[axis] = widened(given.shift[axis]) * Wide(static_cast<std::int64_t>(position_[axis]));
     }
     sums.shear = widened(given.shear) * Wide(static_cast<std::int64_t>(impulse_));
     sums.agitation = widened(given.agitation) * Wide(static_cast<std::int64_t>(impulse_));
@@ -123,7 +94,7 @@ class SinglePairs {
   }
   template <class Integer>
   MAPPM_INLINE auto density(const Integer& sum) const {
-    const auto wide = lanes_of<std::int64_t>(sum);
+    const auto wide = converted<std::int64_t>(sum);
     return wide * std::decay_t<decltype(wide)>(static_cast<std::int64_t>(density_));
   }
 
@@ -132,19 +103,15 @@ class SinglePairs {
   /// 8 rcut or more, a density modulo 80 times that at rest or more. A particle that receives too much for a step
   /// (`advance`) but less than all of that is found as in double precision.
   static constexpr double impulse_ = 0x1p-26 / velocity_quantum;
-  Vec<D, double> place_ = quanta_of_the_least_place();
+  Vec<D, double> position_ = least_position_quanta();
   double density_ = 1.0;
-  static Vec<D, double> quanta_of_the_least_place() {
-    Vec<D, double> place;
-    for (int axis = 0; axis < D; ++axis) place[axis] = 4.0;  // `to_fixed` of a position stays in its range
-    return place;
+  static Vec<D, double> least_position_quanta() {
+    Vec<D, double> quanta;
+    for (int axis = 0; axis < D; ++axis) quanta[axis] = 4.0;  // `to_fixed` of a position stays in its range
+    return quanta;
   }
   PairLaw<D, float> law_;
 };
-
-/// PPs in a block of lanes.
-template <class Numbers>
-inline constexpr int block_lanes = static_cast<int>(Numbers::RealLanes::size());
 
 /// The pair of two points. difference(a, b): of two positions on one axis, quanta; it decides on the periodic image.
 template <int D, class Numbers, class Difference>

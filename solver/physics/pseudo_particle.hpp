@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "base/fixed_point.hpp"
-#include "base/lanes.hpp"
+#include "base/numbers.hpp"
 #include "base/vec.hpp"
 #include "physics/range_fault.hpp"
 
@@ -38,14 +38,14 @@ struct ParticleMotion {
   } beyond;
 };
 
-/// Share of the shift that the flow about a PP allows: C min(1, (a h S / c)^2), where D S^2 is the sum of the squares of the
-/// gradients of its velocity, and C tells flow from the motion of single PPs to and fro:
+/// Share of the shift that the flow about a PP allows: C min(1, (a h S / c)^2), where D S^2 is the sum of the squares
+/// of the gradients of its velocity, and C tells flow from the motion of single PPs to and fro:
 ///   S^2 = sum (V_i^2 + V_j^2) / (2 V_0) G q^4 v^2 / (D m),  S_0^2 = sum (V_i^2 + V_j^2) / (2 V_0) G v^2 / D,
 ///   m = (1 / D) sum V_0 G q^4 r^2 of the even lattice,      C = (S^2 / S_0^2 - 0.7) / 0.2, at least 0 and at most 1
-/// In a flow velocities differ in proportion to the distance, and S = S_0; where they differ by chance S^2 is a third of it.
-/// The shift moves PPs where their lattice is even, the pressure where the density is at rest. At a wall these are two
-/// places, and a fluid that shifts all the time never comes to rest there. In proportion to S the shift would keep alive
-/// the motion that allows it; by its square it dies out.
+/// In a flow velocities differ in proportion to the distance, and S = S_0; where they differ by chance S^2 is a third
+/// of it. The shift moves PPs where their lattice is even, the pressure where the density is at rest. At a wall these
+/// are two places, and a fluid that shifts all the time never comes to rest there. In proportion to S the shift would
+/// keep alive the motion that allows it; by its square it dies out.
 template <int D, class Real>
 MAPPM_INLINE Real shift_share(const Real& shear, const Real& agitation, const ParticleStep<D>& step) {
   constexpr double chance = 0.7, flow = 0.9;
@@ -68,7 +68,7 @@ MAPPM_INLINE auto motion_of(const Vec<D, Real>& x, const Vec<D, Real>& v, const 
     const Real impulse = real_of(sums.impulse[axis]);
     const Real new_v = v[axis] + (impulse * velocity_quantum + step.kick[axis]);
     const Real moved =
-        real_of(to_fixed(new_v * step.drift[axis])) + real_of(to_fixed(share * real_of(sums.shift[axis])));
+        real_of(nearest_fixed(new_v * step.drift[axis])) + real_of(nearest_fixed(share * real_of(sums.shift[axis])));
     beyond.impulse = beyond.impulse || !(magnitude(impulse) < largest_impulse);
     beyond.velocity = beyond.velocity || !(magnitude(new_v) < largest_velocity);
     beyond.displacement = beyond.displacement || !(magnitude(moved) <= step.largest_drift[axis]);

@@ -150,7 +150,7 @@ template <class Kernel, int D>
 double wall_friction_of(double reach, double largest_no_slip, int walls) {
   const int most = static_cast<int>(reach) + 1;
   struct Row {
-    double place, no_slip;  // no_slip: 0 for a PP
+    double position, no_slip;  // no_slip: 0 for a PP
   };
   std::vector<Row> both_sides, at_wall;
   for (int k = -most; k <= most; ++k) {
@@ -164,7 +164,7 @@ double wall_friction_of(double reach, double largest_no_slip, int walls) {
     for (const Row& i : x)
       for (const Row& j : y)
         for (const Row& k : z) {
-          const double square = i.place * i.place + j.place * j.place + k.place * k.place;
+          const double square = i.position * i.position + j.position * j.position + k.position * k.position;
           if (square == 0.0 || square >= reach * reach) continue;
           const double no_slip = std::max({i.no_slip, j.no_slip, k.no_slip});
           friction += (no_slip > 0.0 ? no_slip : 2.0) * Kernel::gradient(std::sqrt(square) / reach);

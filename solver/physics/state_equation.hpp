@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/fixed_point.hpp"
-#include "base/lanes.hpp"
+#include "base/numbers.hpp"
 #include "physics/range_fault.hpp"
 
 namespace mappm {

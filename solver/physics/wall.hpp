@@ -1,7 +1,7 @@
 // Extrapolated no-slip at the surface of a solid.
 #pragma once
 
-#include "base/lanes.hpp"
+#include "base/numbers.hpp"
 #include "base/vec.hpp"
 
 namespace mappm {

@@ -67,8 +67,8 @@ void set_value(toml::node& parent, const std::string& part, const std::string& p
   }
   child(parent, part, path, value);  // checks the index
   toml::array& array = *parent.as_array();
-  const auto place = array.cbegin() + static_cast<std::ptrdiff_t>(std::stoul(part));
-  parsed.get("value")->visit([&](const auto& node) { array.replace(place, node); });
+  const auto element = array.cbegin() + static_cast<std::ptrdiff_t>(std::stoul(part));
+  parsed.get("value")->visit([&](const auto& node) { array.replace(element, node); });
 }
 
 void erase(toml::table& tree, const std::string& path) {

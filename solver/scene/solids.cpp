@@ -113,9 +113,9 @@ Shape<D> make_ball_shape(const Scene& scene, const BodyScene& body, const Model<
   return shape;
 }
 
-/// Position quanta of a place in scene units, wrapped into the box.
-double to_quanta(double place, double side) {
-  const double quanta = static_cast<double>(to_fixed_wide(place / side * box_quanta));
+/// Position quanta of a position in scene units, wrapped into the box.
+double to_quanta(double position, double side) {
+  const double quanta = static_cast<double>(to_fixed_wide(position / side * box_quanta));
   return wrap_position(quanta);
 }
 

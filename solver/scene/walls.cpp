@@ -93,8 +93,8 @@ bool fits_lattice(const Scene& scene, const BodyScene& wall) {
     const WallSide side = side_of(scene, wall, axis);
     if (side.whole) continue;
     const double cell = scene.box[at(axis)] / static_cast<double>(lattice_nodes(scene, axis));
-    for (const double place : {side.first / cell, (side.first + side.length) / cell})
-      if (std::fabs(place - std::floor(place + 0.5)) > touch) return false;
+    for (const double edge : {side.first / cell, (side.first + side.length) / cell})
+      if (std::fabs(edge - std::floor(edge + 0.5)) > touch) return false;
   }
   return true;
 }

@@ -1,16 +1,13 @@
 #include "serial/engine.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
+
+#include "base/stopwatch.hpp"
 
 namespace mappm {
 
 namespace {
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 template <int D>
 Vec<D, double> position(const FluidParticles<D>& fluid, std::size_t i) {
@@ -73,7 +70,7 @@ SerialEngine<D>::SerialEngine(const Model<D>& model, State<D>&& state, Neighbour
 ///   4. kick and drift the PPs; sum the impulses of the FPs onto their solids, add contacts, kick and drift these.
 template <int D>
 void SerialEngine<D>::step() {
-  const double start = seconds_now();
+  Stopwatch watch;
   place_solids();
   find_neighbours();
   sum_densities();
@@ -86,13 +83,12 @@ void SerialEngine<D>::step() {
                         sum_over_frozen<Kernel, transport>(numbers, i);
                       }
                     });
-  const double summed = seconds_now();
+  pair_seconds_ += watch.lap();
   trace_partners();
   move_fluid();
   move_solids();
   ++state_.step;
-  pair_seconds_ += summed - start;
-  integrate_seconds_ += seconds_now() - summed;
+  integrate_seconds_ += watch.lap();
 }
 
 template <int D>
@@ -143,10 +139,10 @@ void SerialEngine<D>::sum_densities() {
   });
   for (std::size_t i = 0; i < fluid.size(); ++i) {
     volume_[i] = volume_terms(density_[i], model_.rest_density, 1.0, model_.background);
-    note_density(model_, {state_.step, FaultPlace::What::fluid_density, fluid.id[i]}, density_[i], fault_);
+    note_density(model_, {state_.step, FaultOrigin::What::fluid_density, fluid.id[i]}, density_[i], fault_);
   }
   for (const FrozenInStep<D>& fp : frozen_)
-    note_density(model_, {state_.step, FaultPlace::What::frozen_density, state_.solids[fp.solid].id, fp.index},
+    note_density(model_, {state_.step, FaultOrigin::What::frozen_density, state_.solids[fp.solid].id, fp.index},
                  fp.density, fault_);
 }
 
@@ -296,7 +292,7 @@ void SerialEngine<D>::move_fluid() {
     Vec<D, double> x = position(fluid, i), v = velocity(fluid, i);
     const RangeFault fault = advance(x, v, sums_[i], constants);
     if (fault != RangeFault::none)
-      note_motion(fault, {state_.step, FaultPlace::What::fluid_motion, fluid.id[i]}, v, sums_[i], fault_);
+      note_motion(fault, {state_.step, FaultOrigin::What::fluid_motion, fluid.id[i]}, v, sums_[i], fault_);
     for (int axis = 0; axis < D; ++axis) {
       fluid.x(axis)[i] = wrap_position(x[axis]);
       fluid.v(axis)[i] = v[axis];
@@ -321,7 +317,7 @@ void SerialEngine<D>::move_solids() {
   note_overlaps(model_, state_.step, loads, overlaps_);
   for (std::size_t a = 0; a < state_.solids.size(); ++a) {
     Solid<D>& solid = state_.solids[a];
-    fault_.note({state_.step, FaultPlace::What::solid_motion, solid.id},
+    fault_.note({state_.step, FaultOrigin::What::solid_motion, solid.id},
                 finish_step(model_, state_.step, solid, std::move(loads[a]), state_.outside_impulse));
   }
 }

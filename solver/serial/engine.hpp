@@ -13,19 +13,19 @@
 namespace mappm {
 
 template <int D>
-class SerialEngine {
+class SerialEngine final : public Engine<D> {
  public:
   SerialEngine(const Model<D>& model, State<D>&& state, Neighbours neighbours);
 
-  void step();
-  std::uint64_t present_step() const { return state_.step; }
-  State<D>& state() { return state_; }
-  Sample<D> sample();
-  const FirstFault& first_fault() const { return fault_; }
-  const FirstOverlaps& overlaps() const { return overlaps_; }
-  void trace_next_step(std::uint64_t particle) { traced_particle_ = particle; }
-  const MaybeTrace<D>& last_trace() const { return trace_; }
-  PhaseSeconds phase_seconds() const { return {{"pairs", pair_seconds_}, {"integrate", integrate_seconds_}}; }
+  void step() override;
+  std::uint64_t present_step() const override { return state_.step; }
+  State<D>& state() override { return state_; }
+  Sample<D> sample() override;
+  const FirstFault& first_fault() const override { return fault_; }
+  const FirstOverlaps& overlaps() const override { return overlaps_; }
+  void trace_next_step(std::uint64_t particle) override { traced_particle_ = particle; }
+  const MaybeTrace<D>& last_trace() const override { return trace_; }
+  PhaseSeconds phase_seconds() const override { return {{"pairs", pair_seconds_}, {"integrate", integrate_seconds_}}; }
 
  private:
   void place_solids();

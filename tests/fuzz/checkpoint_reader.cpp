@@ -64,7 +64,7 @@ hid_t open_object(hid_t file, std::size_t name) {
 }
 
 /// One word of a data set or attribute.
-void set_word(hid_t file, std::size_t name, std::uint64_t place, std::uint64_t value) {
+void set_word(hid_t file, std::size_t name, std::uint64_t position, std::uint64_t value) {
   const bool is_data = name < data_sets.size();
   const hid_t object = open_object(file, name);
   if (object < 0) return;
@@ -72,7 +72,7 @@ void set_word(hid_t file, std::size_t name, std::uint64_t place, std::uint64_t v
   const hid_t space = is_data ? H5Dget_space(object) : H5Aget_space(object);
   const hssize_t count = H5Sget_simple_extent_npoints(space);
   if (count > 0 && static_cast<std::size_t>(count) <= words.size()) {
-    std::uint64_t& word = words[place % static_cast<std::uint64_t>(count)];
+    std::uint64_t& word = words[position % static_cast<std::uint64_t>(count)];
     if (is_data) {
       H5Dread(object, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, words.data());
       word = value;
@@ -116,8 +116,8 @@ void edit(Input input) {
     const std::size_t name = input.take(1) % names;
     switch (action % 3) {
       case 0: {
-        const std::uint64_t place = input.take(2);
-        set_word(file, name, place, input.take(8));
+        const std::uint64_t position = input.take(2);
+        set_word(file, name, position, input.take(8));
         break;
       }
       case 1: {

@@ -121,7 +121,7 @@ TEST(ParallelDensities, of_a_body_beside_its_own_image_are_those_beside_another)
     return densities;
   };
   const std::vector<double> expected = all_densities(one, 1), found = all_densities(repeated, 4);
-  for (std::size_t n = 0; n < found.size(); ++n)  // places are rounded to quanta of another size
+  for (std::size_t n = 0; n < found.size(); ++n)  // positions are rounded to quanta of another size
     EXPECT_NEAR(found[n], expected[n % count], 1e-11) << "solid " << n / count << ", FP " << n % count;
 }
 

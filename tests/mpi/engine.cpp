@@ -227,7 +227,7 @@ TEST(ParallelEngine, equals_the_serial_one_with_solids_alone) {
 TEST(ParallelEngine, reports_a_value_out_of_range_and_goes_on) {
   const Built<2> built(testing::head("[12.0, 10.8]", "0.3", "11.1111111111"));
   const Domains<2> domains = make_domains<2>(built.model, world().size(), "");
-  for (std::size_t k = 0; k < 2 * lane_count; ++k) {  // at every place of its lanes, and at the end of a row
+  for (std::size_t k = 0; k < 2 * lane_count; ++k) {  // at every lane, and at the end of a row
     State<2> state = built.state(domains.region(world().rank()));
     if (world().is_first()) state.fluid.v(0)[k] = 3.0;
     const std::string named = "step 0: particle " + std::to_string(state.fluid.id[k]) + ": moves more than rcut/4";

@@ -10,6 +10,8 @@
 #include <random>
 #include <span>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #include "parallel/residents.hpp"
 #include "unit/serial/scenes.hpp"
@@ -40,6 +42,19 @@ std::string swirl_in(const std::string& sides) {
   return text.replace(text.find(own), own.size(), sides);
 }
 
+/// What may be done at a stage of the sums of a step, and that it uses the stage up.
+template <class Sums>
+concept CanSumInner = requires(Sums sums, const CellGrid<2>& grid) {
+  static_cast<Sums>(sums).sum_inner(grid);
+};
+template <Stage stage>
+using SumsAt = StepSums<2, DoubleLanes<2>, stage>;
+static_assert(CanSumInner<SumsAt<Stage::known_densities>&&>);
+static_assert(!CanSumInner<SumsAt<Stage::known_densities>&>, "it would be summed twice");
+static_assert(!CanSumInner<SumsAt<Stage::densities>&&>, "densities are not known yet");
+static_assert(!CanSumInner<SumsAt<Stage::forces>&&>, "forces are summed already");
+static_assert(!std::is_copy_constructible_v<SumsAt<Stage::densities>>);
+
 /// How a sum comes about: by lists of the step, by lists that are kept, by such after the PPs have moved, or then in
 /// two parts, of which the first must not look at some PPs.
 enum class Lists { once, kept, kept_after_motion, kept_in_parts };
@@ -54,43 +69,38 @@ std::vector<std::uint32_t> all_of(const FluidParticles<D>& fluid) {
 }
 
 template <class Pass, int D>
-void sum_densities(Pass& pass, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
-  pass.sum_inner_densities(grid);
-  pass.sum_rest_densities(fluid, grid);
+auto sum_densities(Pass& pass, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
+  return pass.sum_inner_densities(grid).sum_rest(fluid, grid);
 }
 
 /// The passes of a step over PPs that are all owned.
 template <class Pass, int D>
-std::vector<double> sum(Pass& pass, FluidParticles<D>& fluid, const CellGrid<D>& grid) {
-  std::vector<double> density(fluid.size());
-  sum_densities(pass, fluid, grid);
-  pass.close_densities({}, density);
-  pass.sum_inner(grid);
-  pass.sum_rest(grid);
-  return density;
+auto sum(Pass& pass, FluidParticles<D>& fluid, const CellGrid<D>& grid, std::vector<double>& density) {
+  density.resize(fluid.size());
+  return sum_densities(pass, fluid, grid).close({}, density).sum_inner(grid).sum_rest(density, grid);
 }
 
 /// Tells the pass where those that are not foreign have moved to, in lanes where it takes them.
-template <class Pass, int D>
-void tell_of_motion(Pass& pass, const FluidParticles<D>& fluid, const std::vector<std::uint8_t>& foreign) {
+template <class Forces, int D>
+void tell_of_motion(Forces&& forces, const FluidParticles<D>& fluid, const std::vector<std::uint8_t>& foreign) {
   for (std::uint32_t i = 0; i < fluid.size();) {
-    const std::uint32_t place = pass.place(i);
-    const bool lanes = place % lane_count == 0 && i + lane_count <= fluid.size() &&
-                       pass.place(i + lane_count - 1) == place + lane_count - 1;
+    const std::uint32_t slot = forces.pass().blocks().slot(i);
+    const bool lanes = slot % lane_count == 0 && i + lane_count <= fluid.size() &&
+                       forces.pass().blocks().slot(i + lane_count - 1) == slot + lane_count - 1;
     if (lanes && std::count(foreign.begin() + i, foreign.begin() + i + lane_count, 0) == lane_count) {
       Vec<D, Lanes> x, v;
       for (int axis = 0; axis < D; ++axis) {
         x[axis] = load_lanes(&fluid.x(axis)[i]);
         v[axis] = load_lanes(&fluid.v(axis)[i]);
       }
-      pass.moved(place, x, v);
+      forces.moved(slot, x, v);
       i += lane_count;
       continue;
     }
     if (foreign[i] == 0) {
       Vec<D, double> x = fluid.position(i), v;
       for (int axis = 0; axis < D; ++axis) v[axis] = fluid.v(axis)[i];
-      pass.moved(place, x, v);
+      forces.moved(slot, x, v);
     }
     ++i;
   }
@@ -126,8 +136,8 @@ AllSums sums_over(const Model<2>& model, FluidParticles<2> fluid, double behind,
   FluidPass<2, Numbers> pass(model, 1);
   pass.list(fluid, grid, Region<2>::whole_box(), kind == Lists::once ? 1.0 : reach, all_of(fluid), false);
   AllSums result;
-  result.density = sum(pass, fluid, grid);
-  for (std::uint32_t i = 0; i < fluid.size(); ++i) result.forces.push_back(pass.sums(pass.place(i)));
+  const auto forces = sum(pass, fluid, grid, result.density);
+  for (std::uint32_t i = 0; i < fluid.size(); ++i) result.forces.push_back(forces.sums(pass.blocks().slot(i)));
   return result;
 }
 
@@ -150,8 +160,8 @@ void expect_blindness() {
 }
 
 TEST(FluidPass, does_not_see_what_lies_behind_the_last_particle) {
-  expect_blindness<DoublePairs<2>>();
-  expect_blindness<SinglePairs<2>>();
+  expect_blindness<DoubleLanes<2>>();
+  expect_blindness<SingleLanes<2>>();
 }
 
 /// Particles at random all over the box, every fifth of them in a heap narrower than the cutoff: rows that hold many
@@ -239,7 +249,7 @@ class AllPairs {
     }
     return sums;
   }
-  /// What one point gives another, from whose place to that of the first the vector of beta points.
+  /// What one point gives another, from whose position to that of the first the vector of beta points.
   template <class Beta>
   NeighbourSums<D> of_pair(const PairPoint<D>& one, const PairPoint<D>& other, const Beta& beta) const {
     const auto pair = pair_of(numbers_, one, other, difference);
@@ -323,30 +333,29 @@ void expect_sums_of_all_pairs(const Case& test) {
   pass.list(fluid, grid, widened(model, region, 0.5 * (reach - 1.0)), test.kind == Lists::once ? 1.0 : reach, foreign,
             in_parts);
   if (test.kind == Lists::kept_after_motion || in_parts) {
-    sum(pass, fluid, grid);
+    std::vector<double> density;
+    auto forces = sum(pass, fluid, grid, density);
     stir(model, fluid);
-    tell_of_motion(pass, fluid, is_foreign);
+    tell_of_motion(forces, fluid, is_foreign);
   }
   const AllPairs<D, Numbers, Kernel> all(model, fluid);
   std::vector<std::uint32_t> others;
   for (std::uint32_t i = 0; i < fluid.size(); ++i)
     if (!region.contains(fluid.position(i)) && is_foreign[i] != 0) others.push_back(i);
   std::vector<double> density(fluid.size(), -1.0);
-  sum_densities(pass, fluid, grid);
-  pass.close_densities(others, density);
+  auto known = sum_densities(pass, fluid, grid).close(others, density);
   for (const std::uint32_t i : others) ASSERT_EQ(density[i], model.rest_density);
   for (std::uint32_t i = 0; i < fluid.size(); ++i)
     if (region.contains(fluid.position(i))) {
       ASSERT_EQ(density[i], all.density()[i]) << "particle " << i;
     }
-  pass.sum_inner(grid);
+  auto inner = std::move(known).sum_inner(grid);
   for (const std::uint32_t i : others) density[i] = model.rest_density * (0.9 + 0.001 * (i % 200));
-  pass.take_densities(density);
-  pass.sum_rest(grid);
+  const auto forces = std::move(inner).sum_rest(density, grid);
   std::size_t pairs = 0;
   for (std::uint32_t i = 0; i < fluid.size(); ++i) {
     if (!region.contains(fluid.position(i))) continue;
-    const NeighbourSums<D> sums = all.forces(i, density), found = pass.sums(pass.place(i));
+    const NeighbourSums<D> sums = all.forces(i, density), found = forces.sums(pass.blocks().slot(i));
     ASSERT_EQ(found.impulse, sums.impulse) << "particle " << i;
     ASSERT_EQ(found.shift, sums.shift) << "particle " << i;
     ASSERT_EQ(found.shear, sums.shear) << "particle " << i;
@@ -366,11 +375,12 @@ TEST(FluidPass, leaves_little_for_the_second_part) {
   std::vector<std::uint32_t> foreign;
   for (std::uint32_t i = 0; i < fluid.size(); ++i)
     if (fluid.x(0)[i] > 0.9 * box_quanta) foreign.push_back(i);
-  FluidPass<2, DoublePairs<2>> pass(built.model, 1);
+  FluidPass<2, DoubleLanes<2>> pass(built.model, 1);
   pass.list(fluid, grid, Region<2>::whole_box(), reach, foreign, true);
-  ASSERT_EQ(pass.kept().size(), 2u);
-  const auto first = static_cast<double>(pass.kept()[0].blocks().size()),
-             second = static_cast<double>(pass.kept()[1].blocks().size());
+  const auto& lists = pass.lists().all();
+  ASSERT_EQ(lists.size(), 2u);
+  const auto first = static_cast<double>(lists[0].blocks().size()),
+             second = static_cast<double>(lists[1].blocks().size());
   EXPECT_GT(first / (first + second), 0.8);
   EXPECT_LT(first / (first + second), 0.9);
 }
@@ -385,10 +395,10 @@ TEST(FluidPass, sums_over_all_pairs) {
     for (const int threads : {1, 3})
       for (const double across : {1.0, 1.45, 3.0})
         for (const double along : {1.0, 8.0}) {
-          expect_sums_of_all_pairs<2, DoublePairs<2>, WendlandC2>({swirl, 1000, along, across, threads, kind, 5000});
-          expect_sums_of_all_pairs<3, DoublePairs<3>, WendlandC2>({deep, 1000, along, across, threads, kind, 5000});
-          expect_sums_of_all_pairs<2, SinglePairs<2>, WendlandC2>({swirl, 1000, along, across, threads, kind, 5000});
-          expect_sums_of_all_pairs<3, SinglePairs<3>, WendlandC2>({deep, 1000, along, across, threads, kind, 5000});
+          expect_sums_of_all_pairs<2, DoubleLanes<2>, WendlandC2>({swirl, 1000, along, across, threads, kind, 5000});
+          expect_sums_of_all_pairs<3, DoubleLanes<3>, WendlandC2>({deep, 1000, along, across, threads, kind, 5000});
+          expect_sums_of_all_pairs<2, SingleLanes<2>, WendlandC2>({swirl, 1000, along, across, threads, kind, 5000});
+          expect_sums_of_all_pairs<3, SingleLanes<3>, WendlandC2>({deep, 1000, along, across, threads, kind, 5000});
         }
 }
 
@@ -396,39 +406,40 @@ TEST(FluidPass, sums_over_all_pairs_with_other_kernels) {
   const std::string deep = swirl_in("[4.0, 5.0, 6.0]");
   for (const Lists kind : all_kinds)
     for (const int threads : {1, 2}) {
-      expect_sums_of_all_pairs<2, DoublePairs<2>, Lucy>({with_kernel(swirl, "lucy"), 1000, 8, 1, threads, kind, 5000});
-      expect_sums_of_all_pairs<3, SinglePairs<3>, Lucy>(
+      expect_sums_of_all_pairs<2, DoubleLanes<2>, Lucy>({with_kernel(swirl, "lucy"), 1000, 8, 1, threads, kind, 5000});
+      expect_sums_of_all_pairs<3, SingleLanes<3>, Lucy>(
           {with_kernel(deep, "lucy"), 1000, 8, 1.45, threads, kind, 5000});
       // Its weight is singular, and an impulse must not leave its range.
-      expect_sums_of_all_pairs<2, DoublePairs<2>, MpsWeight>(
+      expect_sums_of_all_pairs<2, DoubleLanes<2>, MpsWeight>(
           {with_kernel(swirl, "mps"), 0, 8, 1, threads, kind, 1000, true});
-      expect_sums_of_all_pairs<3, SinglePairs<3>, MpsWeight>(
+      expect_sums_of_all_pairs<3, SingleLanes<3>, MpsWeight>(
           {with_kernel(swirl_in("[4.0, 4.0, 4.0]"), "mps"), 0, 8, 1.45, threads, kind, 5000, true});
     }
 }
 
-/// Few particles in a long box: a block of them is wider than the window in which places of single precision differ.
+/// Few particles in a long box: a block of them is wider than the window in which coordinates of single precision
+/// differ.
 TEST(FluidPass, sums_over_all_pairs_where_blocks_are_wide) {
   const std::string wide = swirl_in("[40.0, 5.0]"), long_box = swirl_in("[40.0, 5.0, 5.0]");
   for (const Lists kind : all_kinds)
     for (const double along : {1.0, 8.0}) {
-      expect_sums_of_all_pairs<2, DoublePairs<2>, WendlandC2>({wide, 200, along, 1, 1, kind, 100});
-      expect_sums_of_all_pairs<2, SinglePairs<2>, WendlandC2>({wide, 200, along, 1, 1, kind, 100});
+      expect_sums_of_all_pairs<2, DoubleLanes<2>, WendlandC2>({wide, 200, along, 1, 1, kind, 100});
+      expect_sums_of_all_pairs<2, SingleLanes<2>, WendlandC2>({wide, 200, along, 1, 1, kind, 100});
       // In space two rows share a block.
       for (std::size_t count = 20; count < 120; count += 2)
-        expect_sums_of_all_pairs<3, SinglePairs<3>, WendlandC2>({long_box, count, along, 1, 1, kind, 0});
+        expect_sums_of_all_pairs<3, SingleLanes<3>, WendlandC2>({long_box, count, along, 1, 1, kind, 0});
     }
 }
 
 /// FPs anywhere, owned and not, by whatever solids.
 template <int D>
 std::vector<FrozenInStep<D>> some_frozen(const Model<D>& model, std::size_t count) {
-  const FluidParticles<D> places = heap(model, count);
+  const FluidParticles<D> positions = heap(model, count);
   std::vector<FrozenInStep<D>> frozen(count);
   for (std::uint32_t k = 0; k < count; ++k) {
     FrozenInStep<D>& fp = frozen[k];
     for (int axis = 0; axis < D; ++axis) {
-      fp.place.x[axis] = places.x(axis)[k] + 3.0;
+      fp.place.x[axis] = positions.x(axis)[k] + 3.0;
       fp.place.v[axis] = 0.01 * (k % 7);
     }
     fp.place.normal[static_cast<int>(k % D)] = 1.0;
@@ -460,9 +471,9 @@ void expect_frozen_sums_of_all_pairs(const std::string& scene, int threads) {
 
   std::vector<std::int64_t> sums;
   std::vector<double> density(fluid.size());
-  sum_densities(pass, fluid, grid);
-  pass.add_frozen_densities(grid, frozen, sums);
-  pass.close_densities({}, density);
+  auto densities = sum_densities(pass, fluid, grid);
+  densities.add_frozen(grid, frozen, sums);
+  auto known = std::move(densities).close({}, density);
   ASSERT_EQ(sums.size(), frozen.size());
   std::vector<double> expected = all.density();
   for (std::size_t k = 0; k < frozen.size(); ++k) {
@@ -482,10 +493,8 @@ void expect_frozen_sums_of_all_pairs(const std::string& scene, int threads) {
     }
 
   std::vector<NeighbourSums<D>> received;
-  pass.take_densities(density);
-  pass.sum_inner(grid);
-  pass.sum_rest(grid);
-  pass.add_frozen(grid, frozen, received);
+  auto forces = std::move(known).sum_inner(grid).sum_rest(density, grid);
+  forces.add_frozen(grid, frozen, received);
   ASSERT_EQ(received.size(), frozen.size());
   std::vector<NeighbourSums<D>> on_fluid(fluid.size(), NeighbourSums<D>{});
   for (std::size_t k = 0; k < frozen.size(); ++k) {
@@ -505,7 +514,7 @@ void expect_frozen_sums_of_all_pairs(const std::string& scene, int threads) {
   }
   for (std::uint32_t i = 0; i < fluid.size(); ++i) {
     if (!region.contains(fluid.position(i))) continue;
-    const NeighbourSums<D> sums_of_fluid = all.forces(i, density), found = pass.sums(pass.place(i));
+    const NeighbourSums<D> sums_of_fluid = all.forces(i, density), found = forces.sums(pass.blocks().slot(i));
     ASSERT_EQ(found.impulse, sums_of_fluid.impulse + on_fluid[i].impulse) << "particle " << i;
     ASSERT_EQ(found.shift, sums_of_fluid.shift + on_fluid[i].shift) << "particle " << i;
     ASSERT_EQ(found.shear, sums_of_fluid.shear + on_fluid[i].shear) << "particle " << i;
@@ -516,10 +525,10 @@ void expect_frozen_sums_of_all_pairs(const std::string& scene, int threads) {
 TEST(FluidPass, sums_over_all_pairs_with_frozen_particles) {
   const std::string deep = swirl_in("[4.0, 5.0, 6.0]");
   for (const int threads : {1, 3}) {
-    expect_frozen_sums_of_all_pairs<2, DoublePairs<2>>(swirl, threads);
-    expect_frozen_sums_of_all_pairs<2, SinglePairs<2>>(swirl, threads);
-    expect_frozen_sums_of_all_pairs<3, DoublePairs<3>>(deep, threads);
-    expect_frozen_sums_of_all_pairs<3, SinglePairs<3>>(deep, threads);
+    expect_frozen_sums_of_all_pairs<2, DoubleLanes<2>>(swirl, threads);
+    expect_frozen_sums_of_all_pairs<2, SingleLanes<2>>(swirl, threads);
+    expect_frozen_sums_of_all_pairs<3, DoubleLanes<3>>(deep, threads);
+    expect_frozen_sums_of_all_pairs<3, SingleLanes<3>>(deep, threads);
   }
 }
 
@@ -530,14 +539,14 @@ TEST(FluidPass, names_an_owned_particle_whose_density_is_out_of_range) {
   grid.fit(Region<2>::whole_box(), lengths_in_reach(built.model), {{8, 1}});
   const auto wrong = [&](const std::vector<std::uint32_t>& others) {
     grid.sort(fluid);
-    FluidPass<2, DoublePairs<2>> pass(built.model, 1);
+    FluidPass<2, DoubleLanes<2>> pass(built.model, 1);
     pass.list(fluid, grid, Region<2>::whole_box(), 1.0, all_of(fluid), false);
     std::vector<double> density(fluid.size());
-    sum_densities(pass, fluid, grid);
-    return pass.close_densities(others, density);
+    static_cast<void>(sum_densities(pass, fluid, grid).close(others, density));
+    return find_out_of_range(density, built.model.rest_density);
   };
   EXPECT_FALSE(wrong({}).has_value());
-  // Eighty-one in one place have 81 W(0), and W(0) is 7 / pi, of a rest density of 12.25.
+  // Eighty-one at one position have 81 W(0), and W(0) is 7 / pi, of a rest density of 12.25.
   for (int n = 0; n < 80; ++n) {
     fluid.id.push_back(1000 + fluid.id.size());
     for (auto& values : fluid.field) values.push_back(values[100]);

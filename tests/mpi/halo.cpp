@@ -46,20 +46,20 @@ void stir(const Model<D>& model, State<D>& state) {
   }
 }
 
-/// The part of a global state that a process owns by the places of another state with the same particles.
+/// The part of a global state that a process owns by the positions of another state with the same particles.
 template <int D>
-State<D> share_of(const State<D>& global, const State<D>& places, const Region<D>& region) {
+State<D> share_of(const State<D>& global, const State<D>& positions, const Region<D>& region) {
   State<D> share;
   for (std::size_t i = 0; i < global.fluid.size(); ++i) {
     Vec<D, double> x;
-    for (int axis = 0; axis < D; ++axis) x[axis] = places.fluid.x(axis)[i];
+    for (int axis = 0; axis < D; ++axis) x[axis] = positions.fluid.x(axis)[i];
     if (!region.contains(x)) continue;
     share.fluid.id.push_back(global.fluid.id[i]);
     for (std::size_t f = 0; f < global.fluid.field.size(); ++f)
       share.fluid.field[f].push_back(global.fluid.field[f][i]);
   }
   for (std::size_t i = 0; i < global.solids.size(); ++i)
-    if (region.contains(places.solids[i].x)) share.solids.push_back(global.solids[i]);
+    if (region.contains(positions.solids[i].x)) share.solids.push_back(global.solids[i]);
   return share;
 }
 
@@ -74,7 +74,7 @@ void for_each_image(const Vec<D, double>& x, const Region<D>& region, F&& f) {
 }
 
 template <int D>
-using Row = std::vector<double>;  // all fields of a PP at its place in the frame of the region, after its id
+using Row = std::vector<double>;  // all fields of a PP at its position in the frame of the region, after its id
 
 template <int D>
 std::multiset<Row<D>> rows(const FluidParticles<D>& fluid) {
@@ -195,7 +195,7 @@ double density_of(std::uint64_t solid, std::uint32_t index) {
 template <int D>
 void expect_densities_of_ghosts(const Model<D>& model, Halo<D>& halo, const State<D>& state, Residents<D>& residents,
                                 const std::vector<Solid<D>>& copies) {
-  residents.settle(state.fluid);
+  residents.settle(state.fluid, StayLength::several_steps);
   std::vector<double> density;
   for (std::size_t i = 0; i < state.fluid.size(); ++i)
     density.push_back(halo.region().contains(state.fluid.position(i)) ? density_of(state.fluid.id[i]) : -1.0);
@@ -211,7 +211,7 @@ void expect_densities_of_ghosts(const Model<D>& model, Halo<D>& halo, const Stat
     if (halo.region().contains(fp.place.x))
       set_density(model, fp, density_of(solids.bodies[fp.solid].solid->id, fp.index));
   halo.begin_densities(state.fluid, residents, density, solids);
-  halo.end_densities(state.fluid, residents, density, solids);
+  halo.end_densities(residents, density, solids);
   for (std::size_t i = 0; i < state.fluid.size(); ++i)
     if (halo.reach().contains(state.fluid.position(i))) {
       EXPECT_EQ(density[i], density_of(state.fluid.id[i])) << "particle " << state.fluid.id[i];
@@ -234,8 +234,8 @@ void expect_brute_force_halo(const Built<D>& built, const Domains<D>& domains) {
   Halo<D> halo(model, domains, world());
   Residents<D> residents(model, region, halo.needed());
   std::vector<Solid<D>> copies;
-  Stopwatch watch;
-  EXPECT_FALSE(halo.exchange(state, residents, copies, watch));
+  PhaseTimes times;
+  EXPECT_FALSE(halo.exchange(state, residents, copies, times));
 
   // A PP that has just changed its owner is not sent on by the former one to where it is not needed.
   const Region<D> reach = widened(model, region, 1.0);
@@ -304,8 +304,8 @@ void expect_whole_margin(const std::string& scene) {
     Residents<D> residents(built.model, region, halo.needed());
     State<D> state = share_of(global, global, region);
     std::vector<Solid<D>> copies;
-    Stopwatch watch;
-    halo.exchange(state, residents, copies, watch);
+    PhaseTimes times;
+    halo.exchange(state, residents, copies, times);
     EXPECT_EQ(rows(state.fluid), expected_rows(global, widened(built.model, region, 1.0 + skin))) << grid;
   }
 }
@@ -324,9 +324,9 @@ TEST(Halo, positions_do_not_drift_through_many_exchanges) {
   Halo<2> halo(built.model, domains, world());
   Residents<2> residents(built.model, region, halo.needed());
   std::vector<Solid<2>> copies;
-  Stopwatch watch;
+  PhaseTimes times;
   for (int n = 0; n < 5; ++n) {
-    halo.exchange(state, residents, copies, watch);
+    halo.exchange(state, residents, copies, times);
     state = share_of(state, state, region);
   }
   EXPECT_EQ(testing::total(digest_share(state)), digest);

@@ -39,11 +39,11 @@ class ResidentsTest : public ::testing::Test {
       fluid_.x(1).back() = quanta(1, pp.y);
       fluid_.v(0).back() = 1.0;
     }
-    residents_.settle(fluid_);
+    residents_.settle(fluid_, StayLength::several_steps);
   }
   /// Moves an own PP along x, as a step does.
   void move(std::uint32_t i, double x) {
-    residents_.moved(std::abs(x - length(0, fluid_.x(0)[i])));
+    residents_.schedule().owned_moved(std::abs(x - length(0, fluid_.x(0)[i])));
     fluid_.x(0)[i] = quanta(0, x);
   }
   bool receive(const std::vector<PP>& particles) {
@@ -53,7 +53,7 @@ class ResidentsTest : public ::testing::Test {
     for (std::size_t field = 0; field < fluid_.field.size(); ++field)
       for (const PP& pp : particles) put(buffer, field == 0 ? quanta(0, pp.x) : field == 1 ? quanta(1, pp.y) : 7.0);
     std::vector<BufferReader> readers{BufferReader(buffer)};
-    const bool stay = residents_.lasts() && residents_.refresh(fluid_, readers);
+    const bool stay = residents_.schedule().lasts() && residents_.refresh(fluid_, readers);
     EXPECT_TRUE(!stay || readers[0].at_end());
     return stay;
   }
@@ -67,7 +67,7 @@ class ResidentsTest : public ::testing::Test {
     for (const Density& one : given) put(buffer, one.id);
     for (const Density& one : given) put(buffer, one.value);
     BufferReader reader(buffer);
-    residents_.take_densities(fluid_, 0, reader, density);
+    residents_.take_densities(0, reader, density);
     EXPECT_TRUE(reader.at_end());
   }
   std::vector<std::uint64_t> sent() const {
@@ -172,7 +172,7 @@ TEST_F(ResidentsTest, a_stay_ends_when_the_own_particles_have_moved_too_far) {
   move(0, 6.0 + 0.15 * skin);  // back: what counts is the sum
   ASSERT_TRUE(receive({{4, 3.5}}));
   move(0, 6.0 + 0.25 * skin);
-  EXPECT_FALSE(residents_.lasts());
+  EXPECT_FALSE(residents_.schedule().lasts());
 }
 
 TEST_F(ResidentsTest, a_stay_ends_when_ghosts_have_moved_too_far) {
@@ -198,15 +198,15 @@ class OwnImages : public ResidentsTest {
   void settle_with_images() {
     settle({{1, 6.0, 0.5}, {2, 6.0, 0.01}, {3, 6.0, 1.0 + 1.2 * skin}, {1, 6.0, 0.5}, {2, 6.0, 0.01}});
     for (const std::uint32_t image : {3u, 4u}) fluid_.x(1)[image] += box_quanta;
-    residents_.settle(fluid_);
+    residents_.settle(fluid_, StayLength::several_steps);
   }
   void move_up(std::uint32_t i, double way) {
     fluid_.x(1)[i] += quanta(1, way);
-    residents_.moved(std::abs(way));
+    residents_.schedule().owned_moved(std::abs(way));
   }
   bool stays() {
     std::vector<BufferReader> no_messages;
-    EXPECT_TRUE(residents_.lasts());
+    EXPECT_TRUE(residents_.schedule().lasts());
     return residents_.refresh(fluid_, no_messages);
   }
 
@@ -259,8 +259,8 @@ TEST_F(ResidentsTest, a_stay_ends_when_a_ghost_nearby_is_sent_no_more) {
 TEST_F(ResidentsTest, a_stay_of_a_single_step_keeps_what_is_owned) {
   settle({{1, 6.0}, {2, 4.01}, {3, 3.99}, {4, 3.5}});
   residents_.leave(fluid_);
-  residents_.settle(fluid_, true);
-  EXPECT_FALSE(residents_.lasts());
+  residents_.settle(fluid_, StayLength::single_step);
+  EXPECT_FALSE(residents_.schedule().lasts());
   EXPECT_EQ(owned_after_leaving(), (Ids{1, 2}));
 }
 
@@ -270,17 +270,17 @@ TEST_F(ResidentsTest, the_end_of_a_stay_is_told_ahead_in_its_second_half) {
   const auto move_on = [&] { move(0, x += 0.105 * 0.5 * skin); };  // nine such steps fit in
   for (std::uint64_t step = 1; step < 5; ++step) {
     move_on();
-    EXPECT_EQ(residents_.plan(step), residents_.never) << step;
+    EXPECT_EQ(residents_.schedule().plan(step), StaySchedule::never) << step;
     ASSERT_TRUE(receive({}));
   }
   for (std::uint64_t step = 5; step < 10; ++step) {
     move_on();
-    EXPECT_EQ(residents_.plan(step), 10u) << step;
+    EXPECT_EQ(residents_.schedule().plan(step), 10u) << step;
     ASSERT_TRUE(receive({}));
   }
   move_on();
-  EXPECT_EQ(residents_.plan(10), 10u);
-  EXPECT_FALSE(residents_.lasts());
+  EXPECT_EQ(residents_.schedule().plan(10), 10u);
+  EXPECT_FALSE(residents_.schedule().lasts());
 }
 
 TEST_F(ResidentsTest, a_stay_ends_with_that_of_a_neighbour_where_it_has_lasted_half_its_time) {
@@ -290,9 +290,9 @@ TEST_F(ResidentsTest, a_stay_ends_with_that_of_a_neighbour_where_it_has_lasted_h
     std::uint64_t step = 0;
     do {
       move(0, x += move_of_a_step * 0.5 * skin);
-      residents_.plan(++step);
-      residents_.fall_in(step, std::max(step, plan));
-    } while (residents_.lasts() && receive({}));
+      residents_.schedule().plan(++step);
+      residents_.schedule().adopt_plan(step, std::max(step, plan));
+    } while (residents_.schedule().lasts() && receive({}));
     residents_.leave(fluid_);
     fluid_ = {};
     return step;
@@ -308,8 +308,8 @@ TEST_F(ResidentsTest, the_end_of_a_stay_at_rest_is_not_to_be_seen) {
   settle({{1, 6.0}});
   for (std::uint64_t step = 1; step < 9; ++step) {
     move(0, 6.0);
-    EXPECT_EQ(residents_.plan(step), residents_.never);
-    residents_.fall_in(step, step + 1);  // nor does it end with another's
+    EXPECT_EQ(residents_.schedule().plan(step), StaySchedule::never);
+    residents_.schedule().adopt_plan(step, step + 1);  // nor does it end with another's
     ASSERT_TRUE(receive({}));
   }
 }
@@ -317,32 +317,32 @@ TEST_F(ResidentsTest, the_end_of_a_stay_at_rest_is_not_to_be_seen) {
 TEST_F(ResidentsTest, lists_of_a_single_step_are_nobody_elses_concern) {
   settle({{1, 6.0}});
   residents_.leave(fluid_);
-  residents_.settle(fluid_, true);
+  residents_.settle(fluid_, StayLength::single_step);
   move(0, 6.0 + 0.5 * skin);
-  EXPECT_EQ(residents_.plan(1), residents_.never);
+  EXPECT_EQ(residents_.schedule().plan(1), StaySchedule::never);
 }
 
 TEST_F(ResidentsTest, lists_pay_where_three_steps_like_the_last_fit_into_a_stay) {
   settle({{1, 6.0}});
-  EXPECT_TRUE(residents_.pays());
+  EXPECT_TRUE(residents_.schedule().pays());
   move(0, 6.0 + 0.2 * skin);
-  EXPECT_TRUE(residents_.pays());
+  EXPECT_TRUE(residents_.schedule().pays());
   move(0, 6.0 + 0.5 * skin);
-  EXPECT_FALSE(residents_.pays());
+  EXPECT_FALSE(residents_.schedule().pays());
 }
 
 TEST_F(ResidentsTest, lists_do_not_pay_where_something_else_ends_each_stay_at_once) {
   settle({{1, 6.0}});
   std::vector<int> tried;
   for (int n = 0; n < 40; ++n) {
-    if (residents_.pays()) tried.push_back(n);
+    if (residents_.schedule().pays()) tried.push_back(n);
     residents_.leave(fluid_);
-    residents_.settle(fluid_);
+    residents_.settle(fluid_, StayLength::several_steps);
   }
   EXPECT_EQ(tried, (std::vector<int>{0, 1, 16, 32}));
   for (int step = 0; step < 2; ++step) EXPECT_TRUE(receive({}));  // a stay of three steps
   residents_.leave(fluid_);
-  EXPECT_TRUE(residents_.pays());
+  EXPECT_TRUE(residents_.schedule().pays());
 }
 
 }  // namespace

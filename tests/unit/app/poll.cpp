@@ -15,13 +15,13 @@ namespace {
 using testing_tools::refusal;
 using testing_tools::ThreadGroup;
 
-using What = FaultPlace::What;
+using What = FaultOrigin::What;
 
 const FirstFault none;
 
-FirstFault fault_of(const FaultPlace& place, const std::string& text) {
+FirstFault fault_of(const FaultOrigin& origin, const std::string& text) {
   FirstFault fault;
-  fault.note(place, text);
+  fault.note(origin, text);
   return fault;
 }
 
@@ -79,16 +79,16 @@ TEST(Poll, agrees_on_the_shortest_wait) {
 
 TEST(Poll, gives_the_first_fault_of_all_to_all) {
   // The lowest step; then what a step looks at first; then the lowest id; then the lowest FP.
-  const FaultPlace places[][3] = {
+  const FaultOrigin origins[][3] = {
       {{9, What::fluid_motion, 0, 0}, {}, {8, What::fluid_motion, 5, 0}},
       {{8, What::solid_motion, 0, 0}, {8, What::fluid_motion, 3, 0}, {8, What::frozen_density, 5, 7}},
       {{8, What::solid_motion, 2, 0}, {8, What::solid_motion, 1, 0}, {8, What::solid_motion, 0, 0}},
       {{8, What::frozen_density, 2, 4}, {}, {8, What::frozen_density, 2, 3}},
   };
-  for (const auto& place : places) {
+  for (const auto& origin : origins) {
     std::atomic<int> seen = 0;
     ThreadGroup(3).run([&](const Group& group) {
-      const FaultPlace& mine = place[group.rank()];
+      const FaultOrigin& mine = origin[group.rank()];
       const FirstFault fault = mine.step == 0 ? none : fault_of(mine, group.rank() == 2 ? "first" : "later");
       seen += refusal<RangeError>([&] { Poll(group, 0).agree_to_stop(10, 0.0, fault); }) == "first";
     });

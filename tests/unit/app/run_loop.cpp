@@ -6,7 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/signals.hpp"
 #include "base/single_group.hpp"
+#include "output/trace_file.hpp"
 #include "unit/app/toy_engine.hpp"
 #include "unit/output/hand_state.hpp"
 #include "unit/output/scratch_folder.hpp"
@@ -58,10 +60,16 @@ class ToyRun : public testing::Test {
     engine.bad_step = bad_step;
     engine.signal_step = signal_step;
     engine.full_step = full_step;
-    const RunSetup<2> setup{scene_, model_, group_, options_, begin, limits_, "toy", {}};
+    const RunSetup<2> setup{.scene = scene_,
+                            .model = model_,
+                            .group = group_,
+                            .options = options_,
+                            .start = begin,
+                            .limits = limits_,
+                            .program = "toy"};
     testing::internal::CaptureStdout();
     try {
-      RunLoop<2, ToyEngine>(setup, engine).run();
+      run_loop(setup, engine);
     } catch (...) {
       testing::internal::GetCapturedStdout();
       throw;

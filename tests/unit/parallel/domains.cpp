@@ -39,10 +39,10 @@ void expect_partition(const Domains<D>& domains) {
   int product = 1;
   for (int axis = 0; axis < D; ++axis) product *= domains.grid()[axis];
   ASSERT_EQ(domains.count(), product);
-  std::array<std::vector<double>, D> places;
+  std::array<std::vector<double>, D> positions;
   std::mt19937_64 random(3);
   for (int axis = 0; axis < D; ++axis) {
-    auto& values = places[static_cast<std::size_t>(axis)];
+    auto& values = positions[static_cast<std::size_t>(axis)];
     for (const double cut : domains.cuts()[static_cast<std::size_t>(axis)])
       for (const double x : {cut - 1.0, cut, cut + 1.0})
         if (x >= 0.0 && x < box_quanta) values.push_back(x);
@@ -51,7 +51,7 @@ void expect_partition(const Domains<D>& domains) {
   for (int n = 0; n < 20000; ++n) {
     Vec<D, double> x;
     for (int axis = 0; axis < D; ++axis) {
-      const auto& values = places[static_cast<std::size_t>(axis)];
+      const auto& values = positions[static_cast<std::size_t>(axis)];
       x[axis] = values[random() % values.size()];
     }
     const int owner = domains.owner(x);
@@ -124,7 +124,7 @@ TEST(Domains, uneven_cuts_partition_the_box_and_see_each_other) {
   const Domains<2> plane(Cuts<2>{fractions({0.0, 0.1, 0.7, 1.0}), fractions({0.0, 0.333, 1.0})});
   expect_partition(plane);
   expect_mutual_images(plane);
-  EXPECT_EQ(plane.region(4).low[0], std::floor(0.1 * box_quanta));  // place (1, 1)
+  EXPECT_EQ(plane.region(4).low[0], std::floor(0.1 * box_quanta));  // coordinates (1, 1)
   EXPECT_EQ(plane.region(4).low[1], std::floor(0.333 * box_quanta));
   const Domains<3> space(Cuts<3>{fractions({0.0, 0.6, 1.0}), fractions({0.0, 0.25, 0.5, 1.0}), fractions({0.0, 1.0})});
   expect_partition(space);

@@ -21,11 +21,11 @@ Vec<D, double> cells_per_cutoff(double along, double across) {
 
 /// A region inside the box whose borders are no round numbers.
 template <int D>
-struct Place {
+struct Site {
   Region<D> region;
   Vec<D, double> length;
 
-  explicit Place(double side_in_cutoffs) {
+  explicit Site(double side_in_cutoffs) {
     for (int axis = 0; axis < D; ++axis) {
       length[axis] = (9.0 + axis) / box_quanta;
       region.low[axis] = std::floor(box_quanta / 7.0) + 3.0 * axis + 1.0;
@@ -38,14 +38,14 @@ struct Place {
 /// Particles all over the region and its margin of rcut, a quarter of them on a border or one quantum beside it. Every
 /// field is a function of the id, so that a mixed-up row shows.
 template <int D>
-FluidParticles<D> scatter(const Place<D>& place, std::size_t count) {
+FluidParticles<D> scatter(const Site<D>& site, std::size_t count) {
   std::mt19937_64 random(20240611);
   FluidParticles<D> fluid;
   fluid.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     fluid.id[i] = 1000 + i;
     for (int axis = 0; axis < D; ++axis) {
-      const double low = place.region.low[axis], high = place.region.high[axis], margin = place.margin(axis);
+      const double low = site.region.low[axis], high = site.region.high[axis], margin = site.margin(axis);
       const double borders[] = {low - margin, low - 1.0, low,        low + 1.0,
                                 high - 1.0,   high,      high + 1.0, high + margin - 1.0};
       std::uniform_real_distribution<double> anywhere(low - margin, high + margin);
@@ -73,18 +73,18 @@ bool is_inner(const CellGrid<D>& grid, const Vec<D, double>& x) {
 template <int D>
 void expect_all_pairs_in_reach(double side, double per_cutoff) {
   SCOPED_TRACE(::testing::Message() << D << "D, side " << side << ", cells to a cutoff " << per_cutoff);
-  const Place<D> place(side);
+  const Site<D> site(side);
   CellGrid<D> grid;
-  grid.fit(place.region, place.length, cells_per_cutoff<D>(per_cutoff + 2, per_cutoff));
-  const FluidParticles<D> fluid = scatter(place, 700);
+  grid.fit(site.region, site.length, cells_per_cutoff<D>(per_cutoff + 2, per_cutoff));
+  const FluidParticles<D> fluid = scatter(site, 700);
   int pairs = 0;
   for (std::size_t i = 0; i < fluid.size(); ++i) {
-    if (!place.region.contains(position(fluid, i))) continue;
+    if (!site.region.contains(position(fluid, i))) continue;
     for (std::size_t j = 0; j < fluid.size(); ++j) {
       double square = 0.0;
       Vec<D, double> distance;
       for (int axis = 0; axis < D; ++axis) {
-        distance[axis] = std::fabs(fluid.x(axis)[i] - fluid.x(axis)[j]) * place.length[axis];
+        distance[axis] = std::fabs(fluid.x(axis)[i] - fluid.x(axis)[j]) * site.length[axis];
         square += distance[axis] * distance[axis];
       }
       if (square >= 1.0) continue;
@@ -109,11 +109,11 @@ TEST(CellGrid, every_pair_within_the_cutoff_of_an_owned_particle_is_in_reach) {
 }
 
 template <int D>
-void expect_exact_ownership(const Place<D>& place, double per_cutoff) {
+void expect_exact_ownership(const Site<D>& site, double per_cutoff) {
   CellGrid<D> grid;
-  grid.fit(place.region, place.length, cells_per_cutoff<D>(per_cutoff + 2, per_cutoff));
+  grid.fit(site.region, site.length, cells_per_cutoff<D>(per_cutoff + 2, per_cutoff));
   for (int axis = 0; axis < D; ++axis) {
-    const double low = place.region.low[axis], high = place.region.high[axis];
+    const double low = site.region.low[axis], high = site.region.high[axis];
     EXPECT_FALSE(grid.is_inner(axis, grid.coordinate(axis, low - 1.0)));
     EXPECT_TRUE(grid.is_inner(axis, grid.coordinate(axis, low)));
     EXPECT_TRUE(grid.is_inner(axis, grid.coordinate(axis, high - 1.0)));
@@ -121,16 +121,16 @@ void expect_exact_ownership(const Place<D>& place, double per_cutoff) {
     EXPECT_EQ(grid.coordinate(axis, low), grid.margin(axis));
     EXPECT_EQ(grid.coordinate(axis, high - 1.0), grid.margin(axis) + grid.inner(axis) - 1);
   }
-  const FluidParticles<D> fluid = scatter(place, 3000);
+  const FluidParticles<D> fluid = scatter(site, 3000);
   for (std::size_t i = 0; i < fluid.size(); ++i)
-    ASSERT_EQ(is_inner(grid, position(fluid, i)), place.region.contains(position(fluid, i)));
+    ASSERT_EQ(is_inner(grid, position(fluid, i)), site.region.contains(position(fluid, i)));
 }
 
 TEST(CellGrid, ownership_by_cell_is_exact_at_the_borders) {
   for (double side = 1.25; side < 6.0; side += 0.37)
     for (const double per_cutoff : {1.0, 1.45, 3.0}) {
-      expect_exact_ownership(Place<2>(side), per_cutoff);
-      expect_exact_ownership(Place<3>(side), per_cutoff);
+      expect_exact_ownership(Site<2>(side), per_cutoff);
+      expect_exact_ownership(Site<3>(side), per_cutoff);
     }
 }
 
@@ -161,10 +161,10 @@ TEST(CellGrid, cells_by_hand) {
 
 template <int D>
 void expect_sorted_permutation() {
-  const Place<D> place(2.6);
+  const Site<D> site(2.6);
   CellGrid<D> grid;
-  grid.fit(place.region, place.length, cells_per_cutoff<D>(3, 3));
-  const FluidParticles<D> before = scatter(place, 2000);
+  grid.fit(site.region, site.length, cells_per_cutoff<D>(3, 3));
+  const FluidParticles<D> before = scatter(site, 2000);
   FluidParticles<D> after = before;
   grid.sort(after);
   ASSERT_EQ(after.size(), before.size());
@@ -200,13 +200,13 @@ TEST(CellGrid, sort_is_a_permutation_into_cell_order) {
 }
 
 TEST(CellGrid, sorts_nothing_and_sorts_again) {
-  const Place<2> place(2.0);
+  const Site<2> site(2.0);
   CellGrid<2> grid;
-  grid.fit(place.region, place.length, cells_per_cutoff<2>(2, 2));
+  grid.fit(site.region, site.length, cells_per_cutoff<2>(2, 2));
   FluidParticles<2> none;
   grid.sort(none);
   EXPECT_EQ(grid.start(static_cast<std::size_t>(grid.count(0) * grid.count(1))), 0u);
-  FluidParticles<2> some = scatter(place, 300);
+  FluidParticles<2> some = scatter(site, 300);
   grid.sort(some);
   const std::vector<std::uint64_t> order = some.id;
   grid.sort(some);

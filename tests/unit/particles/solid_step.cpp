@@ -364,13 +364,13 @@ TEST(FinishStep, a_solid_that_moves_too_far_stays_and_is_reported) {
   EXPECT_TRUE(fast.momentum == before.momentum);
 }
 
-using What = FaultPlace::What;
+using What = FaultOrigin::What;
 
 /// What is noted of a density, in units of that at rest.
-std::string density_fault(const FaultPlace& place, double ratio) {
+std::string density_fault(const FaultOrigin& origin, double ratio) {
   const Model<2> model = hand_model<2>();
   FirstFault fault;
-  note_density(model, place, ratio * model.rest_density, fault);
+  note_density(model, origin, ratio * model.rest_density, fault);
   return fault.text();
 }
 

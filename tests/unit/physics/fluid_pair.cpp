@@ -1,4 +1,4 @@
-// Oracles: literals from an independent computation in numpy (long double), the design's equations written out in plain
+// Oracles: literals from an independent computation in numpy (long double), the law's equations written out in plain
 // formulas, symmetry, and the scalar law for the lanes.
 #include "physics/fluid_pair.hpp"
 
@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/lanes.hpp"
 #include "physics/state_equation.hpp"
 #include "unit/physics/pair_setup.hpp"
 
@@ -131,7 +132,7 @@ void compare_with_plain_formulas(const Fluid<D>& fluid, double rho0) {
   }
 }
 
-TEST(FluidPair, agrees_with_the_designs_equations_in_plain_formulas) {
+TEST(FluidPair, agrees_with_its_equations_in_plain_formulas) {
   compare_with_plain_formulas<2>(testing::plane_fluid(), 10.24);
   compare_with_plain_formulas<3>(testing::space_fluid(), 19.1);
 }
@@ -175,7 +176,7 @@ void expect_lanes_like_double(const Fluid<D>& fluid, double rho0) {
     Lanes beta(1.0);
     for (int lane = 0; lane < lane_count; ++lane) {
       pairs[lane] = random_pair(random, law, rho0);
-      if (batch == 0 && lane == 0) pairs[lane].d = {};  // two particles in one place
+      if (batch == 0 && lane == 0) pairs[lane].d = {};  // two particles at one position
       for (int axis = 0; axis < D; ++axis) {
         wide.d[axis][lane] = pairs[lane].d[axis];
         wide.v[axis][lane] = pairs[lane].v[axis];

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "base/lanes.hpp"
+
 namespace mappm {
 namespace {
 

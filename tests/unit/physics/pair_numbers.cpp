@@ -1,4 +1,4 @@
-// Oracles: the pair law in double precision, scalars for the lanes, and whole boxes as images.
+// Oracles: the pair law in double precision, and the same pair from the other side.
 #include "physics/pair_numbers.hpp"
 
 #include <gtest/gtest.h>
@@ -87,31 +87,6 @@ TEST(SinglePairs, give_the_opposite_to_the_other) {
     EXPECT_EQ(to_i.shear, to_j.shear);
     EXPECT_EQ(to_i.agitation, to_j.agitation);
     EXPECT_EQ(density_given(single, i, j), density_given(single, j, i));
-  }
-}
-
-/// Boxes shorter and longer than the window of the places.
-TEST(SinglePairs, see_one_distance_in_lanes_and_alone_whatever_the_image) {
-  for (const double side : {2.1, 5.0, 7.9, 8.0, 100.0, 1e5, 1e8}) {
-    SCOPED_TRACE(side);
-    testing::Fluid<2> fluid = testing::plane_fluid();
-    fluid.box = {side, 1.5 * side};
-    const SinglePairs<2> single(make_law<2, WendlandC2>(fluid), rest_density);
-    std::mt19937_64 random(9);
-    std::uniform_real_distribution<double> unit(-1.0, 1.0);
-    for (int trial = 0; trial < 200; ++trial)
-      for (int axis = 0; axis < 2; ++axis) {
-        const double cutoff = box_quanta / fluid.box[static_cast<std::size_t>(axis)];
-        const double a = std::floor(0.5 * (unit(random) + 1.0) * (box_quanta - 1.0));
-        const double b = std::nearbyint(a + unit(random) * cutoff);  // may lie outside the box: a ghost
-        const float alone =
-            single.difference(axis, nearest_difference(single.seen(axis, a), single.seen(axis, wrap_position(b))));
-        EXPECT_EQ(single.difference(axis, single.seen(axis, a) - single.seen(axis, b)), alone);
-        const Int32Lanes one(single.place(axis, a)), other(single.place(axis, b));
-        EXPECT_EQ(SinglePairs<2>::apart(one, other)[0], alone);
-        EXPECT_EQ(single.place(axis, Lanes(b))[0], single.place(axis, b));
-        EXPECT_LE(std::fabs(static_cast<double>(alone * single.law().length[axis]) - (a - b) / cutoff), 2e-7);
-      }
   }
 }
 

@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "base/lanes.hpp"
+
 namespace mappm {
 namespace {
 

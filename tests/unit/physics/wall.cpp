@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/lanes.hpp"
+
 namespace mappm {
 namespace {
 

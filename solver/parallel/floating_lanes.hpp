@@ -2,12 +2,12 @@
 // of what exactness costs (bench/pair_numbers.cpp) and for nothing else.
 #pragma once
 
-#include "physics/pair_numbers.hpp"
+#include "parallel/lane_numbers.hpp"
 
 namespace mappm {
 
 template <int D>
-class FloatingPairs : public DoublePairs<D> {
+class FloatingLanes : public DoubleLanes<D> {
  public:
   struct Rounding {
     template <class Real>
@@ -20,7 +20,7 @@ class FloatingPairs : public DoublePairs<D> {
   };
   using ListRounding = Rounding;
   using Sum = double;
-  using DoublePairs<D>::DoublePairs;
+  using DoubleLanes<D>::DoubleLanes;
 
   /// Sums of one PP, or of lanes.
   template <class Real>

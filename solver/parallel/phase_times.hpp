@@ -1,8 +1,7 @@
 // Where the time of a step goes.
 #pragma once
 
-#include <chrono>
-
+#include "base/stopwatch.hpp"
 #include "particles/engine.hpp"
 
 namespace mappm {
@@ -12,15 +11,11 @@ namespace mappm {
 /// and reports on them, their messages included; motion of PPs.
 enum class Phase { exchange, sort, lists, densities, pairs, frozen_pairs, solids, copies, integrate };
 
-class Stopwatch {
+class PhaseTimes {
  public:
-  void start() { last_ = std::chrono::steady_clock::now(); }
+  void start() { watch_.start(); }
   /// Adds the seconds since `start`, or since the last call, to a phase.
-  void end(Phase phase) {
-    const auto now = std::chrono::steady_clock::now();
-    seconds_[static_cast<int>(phase)] += std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
+  void end(Phase phase) { seconds_[static_cast<int>(phase)] += watch_.lap(); }
   PhaseSeconds seconds() const {
     constexpr const char* names[] = {"exchange",     "sort",   "lists",  "densities", "pairs",
                                      "frozen_pairs", "solids", "copies", "integrate"};
@@ -31,7 +26,7 @@ class Stopwatch {
 
  private:
   double seconds_[9] = {};
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  Stopwatch watch_;
 };
 
 }  // namespace mappm
