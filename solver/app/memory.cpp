@@ -105,8 +105,8 @@ MemoryNeed memory_need(const Scene& scene, const ParticleBytes& bytes) {
   need.particles = 1.0;
   for (int axis = 0; axis < scene.dimension; ++axis) need.particles *= static_cast<double>(lattice_nodes(scene, axis));
   const double reach = scene.fluid.cutoff / scene.fluid.spacing;
-  const double neighbours = scene.dimension == 2 ? std::numbers::pi * reach * reach
-                                                 : 4.0 / 3.0 * std::numbers::pi * reach * reach * reach;
+  const double neighbours =
+      scene.dimension == 2 ? std::numbers::pi * reach * reach : 4.0 / 3.0 * std::numbers::pi * reach * reach * reach;
   need.bytes += need.particles * (bytes.each + scene.dimension * bytes.an_axis + neighbours * bytes.a_neighbour);
   return need;
 }

@@ -65,8 +65,6 @@ void CsvFile::check(const std::ostream& stream) const {
   if (!stream) refuse(errno);
 }
 
-void CsvFile::refuse(int cause) const {
-  refuse_to_write(path_, cause);
-}
+void CsvFile::refuse(int cause) const { refuse_to_write(path_, cause); }
 
 }  // namespace mappm

@@ -71,8 +71,7 @@ void remove_file(const fs::path& path) {
   std::error_code failed;
   fs::remove(path, failed);
   if (failed)
-    throw InputError(path.string() + ": cannot be removed: " + failed.message() +
-                     "; choose another folder with --out");
+    throw InputError(path.string() + ": cannot be removed: " + failed.message() + "; choose another folder with --out");
 }
 
 void check_same_scene(const fs::path& folder, const std::string& scene_identity) {
@@ -125,7 +124,8 @@ class RunFolder::Lock {
       refuse(folder_, "another run is at work in this folder; wait for its end, or choose another one");
   }
   bool is_in_place() const {
-    struct stat held {}, there {};
+    struct stat held {
+    }, there{};
     return ::fstat(number_, &held) == 0 && ::stat(path_.c_str(), &there) == 0 && held.st_ino == there.st_ino;
   }
   void release() {
@@ -147,8 +147,9 @@ RunFolder::RunFolder(fs::path path, Entry entry, const Group& group) : path_(std
     lock_ = std::make_unique<Lock>(path_);
     const std::vector<fs::path> left = left_by_runs(path_, false);
     if (entry == Entry::refuse && !left.empty())
-      refuse(path_, "holds " + left.front().filename().string() + " of an earlier run; choose another folder, go on "
-                    "with --resume, or replace it with --overwrite");
+      refuse(path_, "holds " + left.front().filename().string() +
+                        " of an earlier run; choose another folder, go on "
+                        "with --resume, or replace it with --overwrite");
   });
 }
 

@@ -33,9 +33,9 @@ std::vector<LatticeWave> lattice_waves(KernelKind kernel, double reach);
 /// `shift_rate` kappa h in dx.
 bool is_stable(const LatticeWave& wave, double step, double viscosity, double shift_rate);
 
-/// By how much the friction of a PP at a wall may exceed that of one in the fluid: by the factors beta, which are at most
-/// `largest_no_slip`, of the FPs beyond. The PP touches one plane wall or sits in the corner of `walls` of them, which
-/// stand across one another.
+/// By how much the friction of a PP at a wall may exceed that of one in the fluid: by the factors beta, which are at
+/// most `largest_no_slip`, of the FPs beyond. The PP touches one plane wall or sits in the corner of `walls` of them,
+/// which stand across one another.
 template <int D>
 double wall_friction(KernelKind kernel, double reach, double largest_no_slip, int walls);
 

@@ -13,6 +13,7 @@ MAY_INCLUDE = {
     "serial": {"particles", "physics", "base"},
     "parallel": {"particles", "physics", "base"},
     "output": {"particles", "physics", "base"},
+    "library": {"serial", "scene", "output", "particles", "physics", "base"},
     "app": {"serial", "parallel", "scene", "output", "particles", "physics", "base"},
 }
 # A law is written over any number type: lanes, and lists of pairs in them, belong to the fast engine.
