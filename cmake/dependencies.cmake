@@ -29,7 +29,7 @@ set(MPI_CXX_SKIP_MPICXX TRUE)  # the C interface of MPI is all that is used
 find_package(MPI QUIET COMPONENTS CXX)
 mappm_need(MPI_CXX_FOUND "MPI" libopenmpi-dev)
 find_package(OpenMP QUIET COMPONENTS CXX)
-mappm_need(OpenMP_CXX_FOUND "OpenMP" g++)
+mappm_need(OpenMP_CXX_FOUND "OpenMP" "g++, for clang libomp-dev")
 find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h)
 mappm_need(TOMLPLUSPLUS_INCLUDE_DIR "toml++ 3" libtomlplusplus-dev)
 # Serial for the reference, which links no MPI, and over MPI for the parallel solver.
