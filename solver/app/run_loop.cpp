@@ -166,14 +166,16 @@ void RunLoop<D>::make_step() {
   const bool traced = trace.has_value() && trace->step == step();
   if (traced) engine_.trace_next_step(trace->particle);
   stepping_seconds_ += seconds_of([&] { engine_.step(); });
-  if (traced) write_trace(folder_, engine_.last_trace(), setup_.model.terms.transport, trace->particle, setup_.group);
+  if (traced) write_trace(folder_, engine_.last_trace(), setup_.model.terms.transport, setup_.group);
 }
 
 /// A trace of a step that the run does not make would be a file that never comes.
 template <int D>
 void RunLoop<D>::check_trace() const {
   const auto& trace = setup_.options.trace;
-  if (!trace.has_value() || (trace->step >= first_step_ && trace->step < last_step_)) return;
+  if (!trace.has_value()) return;
+  check_traced(engine_.state().fluid, trace->particle, setup_.group);
+  if (trace->step >= first_step_ && trace->step < last_step_) return;
   throw InputError("command line", "--trace", fmt::format("{}@{}", trace->particle, trace->step),
                    fmt::format("this run goes from step {} to {}; choose a step from {} to {}, or change --steps",
                                first_step_, last_step_, first_step_, std::max(first_step_ + 1, last_step_) - 1));

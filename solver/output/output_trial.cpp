@@ -28,34 +28,37 @@ void try_room(const fs::path& path, std::uint64_t bytes) {
   if (failed) refuse_to_write(path, failed.value());
 }
 
-void try_file(const ExpectedFile& file, const Group& group) {
-  const fs::path partial = partial_name(file.path);
-  on_first(group, [&] {
-    make_folder(file.path.parent_path());
+/// `made`: the folders that were not there before.
+void try_files(const std::vector<ExpectedFile>& files, std::vector<fs::path>& made) {
+  for (const ExpectedFile& file : files) {
+    const fs::path folder = file.path.parent_path(), partial = partial_name(file.path);
+    const bool is_new = !fs::exists(fs::symlink_status(folder));
+    make_folder(folder);
+    if (is_new) made.push_back(folder);
     if (!std::ofstream(partial)) refuse_to_write(partial, errno);  // names a cause, which MPI does not
-  });
-  Hdf5Writer(partial.string(), group).close();
-  on_first(group, [&] { try_room(partial, file.bytes + header_bytes); });
+    try_room(partial, file.bytes + header_bytes);
+  }
 }
 
-void discard(const std::vector<ExpectedFile>& files) {
+void discard(const std::vector<ExpectedFile>& files, const std::vector<fs::path>& made) {
   for (const ExpectedFile& file : files) discard_partial(file.path);
-  for (const ExpectedFile& file : files) {
-    std::error_code ignored;
-    fs::remove(file.path.parent_path(), ignored);  // does nothing where there is something in it
-  }
+  std::error_code ignored;
+  for (const fs::path& folder : made) fs::remove(folder, ignored);  // does nothing where there is something in it
 }
 
 }  // namespace
 
 void try_output(const std::vector<ExpectedFile>& files, const Group& group) {
+  std::vector<fs::path> made;
   try {
-    for (const ExpectedFile& file : files) try_file(file, group);
+    on_first(group, [&] { try_files(files, made); });
+    // Only where there is room: the library cannot be trusted to fail in order.
+    for (const ExpectedFile& file : files) Hdf5Writer(partial_name(file.path).string(), group).close();
   } catch (const InputError&) {
-    if (group.is_first()) discard(files);
+    if (group.is_first()) discard(files, made);
     throw;
   }
-  on_first(group, [&] { discard(files); });
+  on_first(group, [&] { discard(files, made); });
 }
 
 }  // namespace mappm

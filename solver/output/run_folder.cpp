@@ -61,7 +61,7 @@ std::vector<fs::path> left_by_runs(const fs::path& folder, bool partial) {
       std::string name = entry.path().filename().string();
       const bool half_written = name.ends_with(mark);
       if (half_written) name.resize(name.size() - mark.size());
-      if (is_of(files, name) && (half_written || !partial)) found.push_back(entry.path());
+      if (is_of(files, name) && !entry.is_directory() && (half_written || !partial)) found.push_back(entry.path());
     }
   }
   return found;
@@ -163,7 +163,8 @@ void RunFolder::open(const std::string& scene_identity, const Group& group) cons
     for (const fs::path& path : left_by_runs(path_, entry_ != Entry::overwrite)) remove_file(path);
     for (const char* folder : {snapshot_folder_name, checkpoint_folder_name}) {
       std::error_code failed;
-      if (fs::is_empty(path_ / folder, failed) && !failed) remove_file(path_ / folder);
+      const bool is_folder = fs::is_directory(fs::symlink_status(path_ / folder, failed));
+      if (entry_ == Entry::overwrite && is_folder && fs::is_empty(path_ / folder, failed)) remove_file(path_ / folder);
     }
   });
 }

@@ -1,6 +1,7 @@
 #include "output/together.hpp"
 
 #include <array>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 
@@ -17,6 +18,9 @@ constexpr char other_kind = 'o';
 std::string describe_failure(const std::exception& error) {
   if (dynamic_cast<const InputError*>(&error) != nullptr) return input_kind + std::string(error.what());
   if (dynamic_cast<const RangeError*>(&error) != nullptr) return range_kind + std::string(error.what());
+  if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error))
+    return input_kind + file->path1().string() + ": " + file->code().message() +
+           "; see that nobody else changes the folder of the run, or choose another one with --out";
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return input_kind + std::string(memory_ran_out);
   return other_kind + std::string(error.what());
 }

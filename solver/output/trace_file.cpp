@@ -45,21 +45,25 @@ std::string trace_text(const StepTrace<D>& trace, bool transport) {
 }
 
 template <int D>
-void write_trace(const std::filesystem::path& folder, const MaybeTrace<D>& trace, bool transport,
-                 std::uint64_t particle, const Group& group) {
-  std::array<Int128, 1> owners{trace.has_value() ? 1 : 0};
-  group.sum(owners);
-  if (owners[0] == 0)
+void check_traced(const FluidParticles<D>& fluid, std::uint64_t particle, const Group& group) {
+  std::array<double, 1> found{std::ranges::find(fluid.id, particle) != fluid.id.end() ? 1.0 : 0.0};
+  group.maximum(found);
+  if (found[0] == 0.0)
     throw InputError("command line", "--trace", fmt::format("{}", particle),
                      "no PP has this id; ids of PPs stand in the snapshots, where kind is 0");
+}
+
+template <int D>
+void write_trace(const std::filesystem::path& folder, const MaybeTrace<D>& trace, bool transport, const Group& group) {
   together(group, [&] {
     if (trace.has_value()) write_durably(folder / "trace.csv", trace_text(*trace, transport));
   });
 }
 
-#define MAPPM_INSTANTIATE(D)                                     \
-  template std::string trace_text<D>(const StepTrace<D>&, bool); \
-  template void write_trace<D>(const std::filesystem::path&, const MaybeTrace<D>&, bool, std::uint64_t, const Group&);
+#define MAPPM_INSTANTIATE(D)                                                         \
+  template std::string trace_text<D>(const StepTrace<D>&, bool);                     \
+  template void check_traced(const FluidParticles<D>&, std::uint64_t, const Group&); \
+  template void write_trace<D>(const std::filesystem::path&, const MaybeTrace<D>&, bool, const Group&);
 MAPPM_INSTANTIATE(2)
 MAPPM_INSTANTIATE(3)
 #undef MAPPM_INSTANTIATE

@@ -6,6 +6,7 @@
 
 #include "base/group.hpp"
 #include "particles/pair_trace.hpp"
+#include "particles/state.hpp"
 
 namespace mappm {
 
@@ -15,10 +16,12 @@ namespace mappm {
 template <int D>
 std::string trace_text(const StepTrace<D>& trace, bool transport);
 
-/// Collective. Writes folder/trace.csv by the process that has the trace. Throws InputError where no process has one,
-/// or the file cannot be written.
+/// Collective. `fluid`: what this process owns. Throws InputError where no process owns a PP of this id.
 template <int D>
-void write_trace(const std::filesystem::path& folder, const MaybeTrace<D>& trace, bool transport,
-                 std::uint64_t particle, const Group& group);
+void check_traced(const FluidParticles<D>& fluid, std::uint64_t particle, const Group& group);
+
+/// Collective. Writes folder/trace.csv by the process that has the trace. Throws InputError where it cannot be written.
+template <int D>
+void write_trace(const std::filesystem::path& folder, const MaybeTrace<D>& trace, bool transport, const Group& group);
 
 }  // namespace mappm

@@ -259,6 +259,31 @@ void fold_pair_law(const Scene& scene, const Lattice<D>& lattice, Model<D>& mode
   model.background = scene.fluid.background_pressure * model.rest_density;
 }
 
+/// The background pressure holds a lattice together by impulses that cancel, so that sums do not show when one of them
+/// leaves the range of a contribution, 8 m c (base/fixed_point.hpp). At rest it may give 1 m c: compression and
+/// expansion change that.
+template <int D>
+void check_background(const Scene& scene, const Model<D>& model) {
+  constexpr double largest = 1.0;  // m c
+  constexpr int points = 256;
+  double gradient = 0.0;
+  with_pair_law(model, [&](auto kernel, auto) {
+    using Kernel = decltype(kernel);
+    for (int k = 1; k <= points; ++k) {
+      const double q = static_cast<double>(k) / points;
+      gradient = std::max(gradient, q * Kernel::gradient(q));
+    }
+  });
+  const double volume = 1.0 / model.rest_density;
+  const double impulse = 2.0 * model.background * volume * volume * gradient * model.pair.force * velocity_quantum;
+  if (impulse > largest)
+    throw InputError(
+        scene.file, "fluid.background_pressure", fmt::format("{}", scene.fluid.background_pressure),
+        fmt::format("gives two PPs up to {:.3g} m c in one step, and the range of numbers allows {:g}; lower "
+                    "it or the step",
+                    impulse, largest));
+}
+
 template <int D>
 void fold_forces(const Scene& scene, const Matter& matter, Model<D>& model) {
   const double unit = model.units.velocity / model.units.time();
@@ -307,7 +332,10 @@ BuiltModel<D> make_model(const Scene& scene) {
   const double step = scene.run.step > 0.0 ? scene.run.step : scene.run.step_factor * limits.ruling().usual;
   check_step(scene, step, limits);
   model.dt = step / model.units.time();
-  if (model.terms.fluid) fold_pair_law(scene, lattice, model);
+  if (model.terms.fluid) {
+    fold_pair_law(scene, lattice, model);
+    check_background(scene, model);
+  }
   fold_forces(scene, matter, model);
   BuiltModel<D> built{model, matter.fluid_particles, limits, {}};
   built.warnings = scene_warnings(scene, model, lattice, limits);

@@ -129,8 +129,8 @@ std::uint64_t Fields::count(const std::string& key, std::optional<std::uint64_t>
   if (!fallback || has(key)) {
     const auto* integer = require(key).as_integer();
     if (!integer)
-      fail(key, fmt::format("wrong type; write a whole number without a decimal point, at most {}",
-                            std::numeric_limits<std::int64_t>::max()));
+      fail(key, fmt::format("wrong type; write a whole number without decimal point and leading zeros, at most {:.0f}",
+                            exact_quanta));
     const std::int64_t value = integer_of(*integer, key);
     if (value < 0) fail(key, "must not be negative; write 0 or more");
     count = static_cast<std::uint64_t>(value);

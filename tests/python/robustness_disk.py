@@ -99,7 +99,8 @@ def through(tmp_path_factory: pytest.TempPathFactory) -> Run:
 @pytest.mark.parametrize(
     ("outputs", "steps", "room", "named"),
     [
-        ((), END, 16, "snapshots/solids_000000120.vtkhdf"),  # tried before the first step
+        ((), END, 0, "snapshots/solids_000000120.vtkhdf"),  # tried before the first step
+        ((), END, 16, "snapshots/solids_000000120.vtkhdf"),
         (("output.snapshot=5",), END, LAST_FILES, "snapshots/fluid_"),  # there was room for the last one
         (("output.sample=1",), 1_000_000, LAST_FILES, "series.csv"),
     ],

@@ -56,6 +56,32 @@ def test_a_second_run_is_refused_and_overwrites_where_it_is_told_to(tmp_path: Pa
     assert (out / "series.csv").read_bytes() == (alone.folder / "series.csv").read_bytes()
 
 
+@pytest.mark.parametrize("ranks", [0, 1, 2])
+def test_a_run_that_is_refused_replaces_nothing(tmp_path: Path, ranks: int) -> None:
+    run(SCENE, tmp_path, FIRST)
+    before = content(tmp_path)
+    line = [*Options(ranks=ranks, steps=20).command(SCENE, tmp_path), "--trace", "99999999@1"]
+    finished = subprocess.run(line, env=os.environ | MPI_ENVIRONMENT, capture_output=True, text=True)
+    assert finished.returncode == 2
+    assert "--trace = 99999999: no PP has this id" in finished.stderr
+    assert content(tmp_path) == before
+
+
+@pytest.mark.parametrize("ranks", [0, 1])
+def test_a_folder_that_is_taken_away_is_named(tmp_path: Path, ranks: int) -> None:
+    out = tmp_path / "out"
+    options = Options(ranks=ranks, steps=ENDLESS.steps, overrides=ENDLESS.overrides)
+    process = subprocess.Popen(options.command(SCENE, out), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    until = time.monotonic() + 60
+    while not (out / "series.csv").exists():
+        assert time.monotonic() < until
+        time.sleep(0.1)
+    out.rename(tmp_path / "elsewhere")
+    _, stderr = process.communicate(timeout=60)
+    assert process.returncode == 2, stderr
+    assert str(out) in stderr
+
+
 def test_the_folder_of_another_scene_is_not_resumed_in(tmp_path: Path) -> None:
     run(SCENE, tmp_path / "one", FIRST)
     run(SCENE, tmp_path / "other", SECOND)

@@ -33,6 +33,17 @@ TEST_F(Trial, leaves_nothing_and_touches_nothing) {
   EXPECT_FALSE(fs::exists(folder_ / "one.h5.partial"));
 }
 
+TEST_F(Trial, removes_only_folders_that_it_made) {
+  testing_tools::write_text(folder_ / "file", "before");
+  EXPECT_TRUE(contains(refused({{folder_ / "file/one.h5", 1000}}), "file: folder cannot be made"));
+  EXPECT_EQ(testing_tools::text_of(folder_ / "file"), "before");
+  fs::create_directory(folder_ / "empty");
+  fs::create_directory_symlink(folder_ / "empty", folder_ / "link");
+  EXPECT_EQ(refused({{folder_ / "empty/one.h5", 1000}, {folder_ / "link/two.h5", 1000}}), "");
+  EXPECT_TRUE(fs::is_directory(fs::symlink_status(folder_ / "empty")));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+}
+
 TEST_F(Trial, refuses_a_file_that_is_too_long_for_its_limit) {
   const testing_tools::SmallDisk disk(1'000'000);
   EXPECT_EQ(refused({{folder_ / "new/one.h5", 900'000}}), "");

@@ -293,6 +293,24 @@ TEST(SceneModel, RefusesWhatCannotRun) {
   expect_input_error([&] { make_model<2>(read(wall)); }, {"body.0.thickness = 0.125", "thicker"});
 }
 
+TEST(SceneModel, RefusesABackgroundPressureWhoseImpulsesLeaveTheRange) {
+  // One pair gets 2 p_b V^2 G r dt: proportional to p_b and to the step. On the lattice 4 spacings to rcut, G is
+  // normalised by (1/D) sum V r^2 G = 1, and the step is that of the scene.
+  const Model<2> model = one_disc_model({"fluid.background_pressure=1.0"});
+  double gradient = 0.0, sum = 0.0;
+  for (double q = 0.0; q < 1.0; q += 1e-4) gradient = std::max(gradient, q * WendlandC2::gradient(q));
+  for (int j = -4; j <= 4; ++j)
+    for (int i = -4; i <= 4; ++i)
+      if (const double square = (i * i + j * j) / 16.0; square > 0.0 && square < 1.0)
+        sum += square * WendlandC2::gradient(std::sqrt(square)) / 16.0;
+  const double of_one = 2.0 / 16.0 * gradient * (2.0 / sum) * model.dt;  // p_b V^2 = c^2 rho_0 / rho_0^2 for p_b = 1
+  const auto with = [](double pressure) {
+    return one_disc_model({"fluid.background_pressure=" + std::to_string(pressure)});
+  };
+  EXPECT_NO_THROW(with(0.99 / of_one));
+  EXPECT_THROW(with(1.01 / of_one), InputError);
+}
+
 TEST(SceneModel, WarnsOutsideTheMappedRegion) {
   const auto warning = [](const Overrides& overrides) {
     std::string all;

@@ -145,7 +145,7 @@ const BadInput bad_inputs[] = {
     {"hexadecimal_count", {"run.steps=0x10"}, {"run.steps = 0x10", "is not decimal"}},
     {"octal_count", {"run.steps=0o10"}, {"run.steps", "is not decimal"}},
     {"count_with_leading_zero", {"run.steps=010"}, {"run.steps", "'010'", "whole number"}},
-    {"count_beyond_64_bits", {"run.steps=99999999999999999999"}, {"run.steps", "at most 9223372036854775807"}},
+    {"count_beyond_64_bits", {"run.steps=99999999999999999999"}, {"run.steps", "at most 9007199254740992"}},
     {"more_steps_than_are_counted", {"run.relax=9007199254740993"}, {"run.relax", "at most 9007199254740992"}},
     {"hexadecimal_number", {"fluid.viscosity=0x2"}, {"fluid.viscosity", "is not decimal"}},
     {"empty_number", {"run.steps="}, {"run.steps", "whole number"}},
