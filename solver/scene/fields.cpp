@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "base/fixed_point.hpp"
 
 namespace mappm {
 
