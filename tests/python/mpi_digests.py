@@ -15,6 +15,7 @@ from verification.solver import ROOT, Options, Run, run
 
 SCENES = Path(__file__).parent / "scenes"
 STEPS = 1000
+GAS_SOLID_STEPS = 400
 
 
 def solids_of(finished: Run) -> Table:
@@ -99,19 +100,19 @@ def test_fields_disorder_and_walls_of_two_directions(tmp_path: Path, scene: str,
 def test_the_gas_solid_scene(tmp_path: Path) -> None:
     file = ROOT / "cases" / "gas_solid_small" / "case.toml"
     overrides = ("output.sample=50", "output.snapshot=0", "output.checkpoint=0")
-    variants = [Options(ranks=ranks, steps=STEPS, overrides=overrides) for ranks in (0, 2, 3)]
-    variants.append(Options(ranks=4, domains="2x2", steps=STEPS, overrides=overrides))
-    assert_all_equal([run(file, tmp_path / str(i), options) for i, options in enumerate(variants)], samples=21)
+    variants = [Options(ranks=ranks, steps=GAS_SOLID_STEPS, overrides=overrides) for ranks in (0, 2, 3)]
+    variants.append(Options(ranks=4, domains="2x2", steps=GAS_SOLID_STEPS, overrides=overrides))
+    assert_all_equal([run(file, tmp_path / str(i), options) for i, options in enumerate(variants)], samples=9)
 
 
 def test_a_restart_of_the_gas_solid_scene(tmp_path: Path) -> None:
     file = ROOT / "cases" / "gas_solid_small" / "case.toml"
-    overrides = (f"output.checkpoint={STEPS // 2}",)
-    through = run(file, tmp_path / "through", Options(ranks=2, steps=STEPS, overrides=overrides))
-    run(file, tmp_path / "restarted", Options(ranks=4, steps=STEPS // 2, overrides=overrides))
+    overrides = (f"output.checkpoint={GAS_SOLID_STEPS // 2}",)
+    through = run(file, tmp_path / "through", Options(ranks=2, steps=GAS_SOLID_STEPS, overrides=overrides))
+    run(file, tmp_path / "restarted", Options(ranks=4, steps=GAS_SOLID_STEPS // 2, overrides=overrides))
     (checkpoint,) = (tmp_path / "restarted" / "checkpoints").iterdir()
-    options = Options(ranks=3, steps=STEPS, overrides=overrides, resume=checkpoint)
-    assert_all_equal([through, run(file, tmp_path / "restarted", options)], samples=21)
+    options = Options(ranks=3, steps=GAS_SOLID_STEPS, overrides=overrides, resume=checkpoint)
+    assert_all_equal([through, run(file, tmp_path / "restarted", options)], samples=9)
 
 
 @pytest.mark.parametrize("scene", ["crossing_2d", "crossing_3d"])

@@ -36,8 +36,8 @@ DROPPED = (
 KICKED = (
     "solver/parallel/engine.cpp",
     (
-        "  residents_->moved(all.farthest());\n",
-        "  residents_->moved(all.farthest());\n"
+        "  residents_->schedule().owned_moved(all.farthest());\n",
+        "  residents_->schedule().owned_moved(all.farthest());\n"
         "  for (std::size_t k = 0; k < state_.fluid.size(); ++k)\n"
         "    if (state_.step == 11 && state_.fluid.id[k] % 97 == 5) state_.fluid.v(1)[k] += velocity_quantum;\n",
     ),
