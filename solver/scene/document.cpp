@@ -133,7 +133,10 @@ std::string canonical_text(const toml::table& tree) {
 }
 
 std::string node_text(const toml::node& node) {
-  if (const auto* number = node.as_floating_point()) return fmt::format("{:#}", number->get());
+  if (const auto* number = node.as_floating_point()) {
+    const std::string text = fmt::format("{}", number->get());
+    return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
+  }
   if (const toml::array* array = node.as_array()) {
     std::string entries;
     for (const toml::node& entry : *array) entries += (entries.empty() ? "" : ", ") + node_text(entry);
