@@ -73,13 +73,14 @@ def test_a_signal_ends_a_run_that_can_be_resumed(tmp_path: Path, ranks: int) -> 
     stdout, _ = process.communicate(timeout=60)
     if ranks < 2:  # mpirun itself ends with 1 where it is asked to end
         assert process.returncode == 0
-    hint = next(line for line in stdout.splitlines() if "resume with: " in line).partition("resume with: ")[2]
+    record = json.loads((tmp_path / "run.json").read_text())
+    assert record["state"] == "stopped"
+    assert record["message"] in stdout or ranks > 1  # mpirun of Open MPI 5 does not pass on what ranks say after SIGTERM
+    hint = record["message"].partition("resume with: ")[2]
     words = shlex.split(hint)
     assert words[0] == ("mpirun" if ranks > 1 else "mappm" if ranks else "mappm-reference")
     assert Path(words[words.index("--resume") + 1]).exists()
     assert "output.sample=10" in words
-    record = json.loads((tmp_path / "run.json").read_text())
-    assert record["state"] == "stopped"
 
     steps = record["steps"] + 15
     resumed = run(LONG_SCENE, tmp_path, Options(ranks=2, steps=steps, overrides=overrides, resume=tmp_path))

@@ -141,6 +141,7 @@ def test_a_signal_leaves_a_checkpoint_to_go_on_from(tmp_path: Path, ranks: int, 
     record = json.loads((tmp_path / "run.json").read_text())
     assert record["state"] == "stopped", stdout
     (checkpoint,) = (tmp_path / "checkpoints").iterdir()
+    assert str(checkpoint) in record["message"]
     assert str(checkpoint) in stdout or ranks > 1  # mpirun of Open MPI 5 does not pass on what ranks say after SIGTERM
     goal = record["steps"] + 20
     resumed = run(SCENE, tmp_path, Options(ranks=3, steps=goal, overrides=endless.overrides, resume=checkpoint))
