@@ -68,17 +68,7 @@ void run_scene(const Scene& scene, const RunOptions& options, const DomainOption
   engine_options.last_step = last_step(scene, built.model, options);
   ParallelEngine<D> engine(built.model, domains, communicator, std::move(start.state), engine_options);
 
-  RunSetup<D> setup{.scene = scene,
-                    .model = built.model,
-                    .group = communicator,
-                    .options = options,
-                    .start = start,
-                    .limits = built.limits,
-                    .program = "mappm",
-                    .instruction_set = instruction_set,
-                    .warnings = built.warnings};
-  setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
-  setup.memory = need.text();
+  RunSetup<D> setup = make_run_setup(scene, built, communicator, options, start, "mappm", instruction_set, need.text());
   setup.program_options = domain_options.repeated();
   const Vec<D, int> grid = domains.grid();
   setup.domains.assign(grid.component, grid.component + D);

@@ -33,17 +33,8 @@ void run_scene(const Scene& scene, const RunOptions& options, Neighbours neighbo
   Start<D> start = start_run<D>(scene, built.model, Region<D>::whole_box(), options, group);
   SerialEngine<D> engine(built.model, std::move(start.state), neighbours);
 
-  RunSetup<D> setup{.scene = scene,
-                    .model = built.model,
-                    .group = group,
-                    .options = options,
-                    .start = start,
-                    .limits = built.limits,
-                    .program = "mappm-reference",
-                    .instruction_set = instruction_set,
-                    .warnings = built.warnings};
-  setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
-  setup.memory = need.text();
+  RunSetup<D> setup =
+      make_run_setup(scene, built, group, options, start, "mappm-reference", instruction_set, need.text());
   if (neighbours == Neighbours::all_pairs) setup.program_options = " --neighbours all-pairs";
   notice.end();
   run_loop<D>(setup, engine);

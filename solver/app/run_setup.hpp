@@ -9,6 +9,7 @@
 #include "base/group.hpp"
 #include "particles/model.hpp"
 #include "physics/step_limit.hpp"
+#include "scene/build.hpp"
 #include "scene/scene.hpp"
 
 namespace mappm {
@@ -31,5 +32,24 @@ struct RunSetup {
   int threads = 1;
   bool faces = false;  // write faces.csv; for engines that keep a ledger of faces
 };
+
+/// What both programs set alike. `compiled_for`: the instruction set of the engine.
+template <int D>
+RunSetup<D> make_run_setup(const Scene& scene, const BuiltModel<D>& built, const Group& group,
+                           const RunOptions& options, const Start<D>& start, const std::string& program,
+                           const std::string& compiled_for, const std::string& memory) {
+  RunSetup<D> setup{.scene = scene,
+                    .model = built.model,
+                    .group = group,
+                    .options = options,
+                    .start = start,
+                    .limits = built.limits,
+                    .program = program,
+                    .instruction_set = compiled_for,
+                    .warnings = built.warnings,
+                    .memory = memory};
+  setup.warnings.insert(setup.warnings.end(), start.warnings.begin(), start.warnings.end());
+  return setup;
+}
 
 }  // namespace mappm

@@ -56,7 +56,7 @@ class FrozenSearch {
       const FrozenInStep<D>& fp = frozen[chosen[n]];
       Vec<D, int> row;
       for (int axis = 1; axis < D; ++axis) row[axis] = grid.coordinate(axis, fp.place.x[axis]);
-      if (n == 0 || row != fitted) near_.fit(grid, blocks, rows, row, false);
+      if (n == 0 || row != fitted) near_.fit(grid, blocks, rows, row);
       fitted = row;
       near_.find(grid, {fp.place.x, fp.place.x});
       lists_.add(chosen[n], centre_of(numbers, fp).x, near_.count(),

@@ -39,22 +39,18 @@ std::vector<Vec<D, int>> row_offsets(const CellGrid<D>& grid, bool half) {
 template <int D>
 class NearRows {
  public:
-  /// The rows at `offsets` from `row` that lie in the grid; `inner`: only those, and of them the cells, in the region.
-  /// Ranges are given in slots of `blocks`.
+  /// The rows at `offsets` from `row` that lie in the grid. Ranges are given in slots of `blocks`.
   template <class Blocks>
   void fit(const CellGrid<D>& grid, const Blocks& blocks, const std::vector<Vec<D, int>>& offsets,
-           const Vec<D, int>& row, bool inner) {
+           const Vec<D, int>& row) {
     row_ = row;
-    lowest_ = inner ? grid.margin(0) : 0;
-    highest_ = inner ? grid.margin(0) + grid.inner(0) - 1 : grid.count(0) - 1;
+    highest_ = grid.count(0) - 1;
     rows_.clear();
     for (auto& borders : borders_) borders.clear();
     for (const Vec<D, int>& offset : offsets) {
       const Vec<D, int> other = row + offset;
       bool chosen = true;
-      for (int axis = 1; axis < D; ++axis)
-        chosen =
-            chosen && (inner ? grid.is_inner(axis, other[axis]) : other[axis] >= 0 && other[axis] < grid.count(axis));
+      for (int axis = 1; axis < D; ++axis) chosen = chosen && other[axis] >= 0 && other[axis] < grid.count(axis);
       if (!chosen) continue;
       rows_.push_back({grid.row(other), blocks.gap(other[D - 1])});
       for (int axis = 1; axis < D; ++axis) borders_[axis].push_back(offset[axis] * grid.width(axis));
@@ -86,7 +82,7 @@ class NearRows {
       }
       const Lanes chord = square_root(larger(left, Lanes(0.0))) * cells_per_reach + rounding;
       const Lanes half = smaller(chord, larger(left * 1e300, Lanes(first - last - 1.0)));  // empty without a chord
-      whole_numbers(smaller(larger(first - half, Lanes(lowest_)), Lanes(highest_)), &low_[n]);
+      whole_numbers(smaller(larger(first - half, Lanes(0.0)), Lanes(highest_)), &low_[n]);
       whole_numbers(larger(smaller(last + half, Lanes(highest_)), Lanes(-1.0)), &high_[n]);
     }
   }
@@ -109,7 +105,7 @@ class NearRows {
     std::uint32_t gap;  // slot of a particle less its index
   };
   Vec<D, int> row_;
-  double lowest_ = 0.0, highest_ = 0.0;
+  double highest_ = 0.0;  // cell along x
   std::vector<Row> rows_;
   std::array<std::vector<double>, D> borders_;  // the lower ones of each row, from those of the own one
   std::vector<std::int32_t> low_, high_;        // cells along x

@@ -164,7 +164,7 @@ void PairLists<D, Numbers>::for_each_block_list(const Blocks& blocks, const Flui
   const std::uint32_t begin = grid.start(cells) + gap;
   const std::uint32_t end = grid.start(cells + static_cast<std::size_t>(grid.count(0))) + gap;
   if (begin == end) return;
-  search.near.fit(grid, blocks, half_rows_, row, false);
+  search.near.fit(grid, blocks, half_rows_, row);
   const double square_of_reach = reach * reach * (1.0 + 1e-6);  // rounding hides no pair
   for (std::uint32_t block = begin / lanes; block * lanes < end; ++block) {
     const std::uint32_t first = std::max(begin, block * lanes), last = std::min(end, (block + 1) * lanes);
