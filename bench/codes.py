@@ -11,7 +11,9 @@ from reference.liggghts import program as liggghts
 from reference.liggghts import sph as liggghts_sph
 from reference.periodic_fluid import ABC, VORTICES, WAVE, Fluid, energies_of, loop_seconds
 from reference.sph_peer import Peer, energies_script, timed_script
-from verification.solver import ROOT, Options, Run, run
+from verification.codes.mappm import Options, run
+from verification.protocol.machine import ROOT
+from verification.protocol.run import Run
 
 SCENE = ROOT / "cases" / "sph_peer" / "case.toml"
 SKINS = (0.3, 0.6, 1.0)  # of the peers' lists of neighbours, in spacings; the quickest is taken

@@ -25,7 +25,8 @@ import numpy as np
 from bench.meter import Broken, run_benchmark
 from bench.scaling import Lab, Point, doubled, median_of, require_one_digest
 from bench.speed import scene_of
-from verification.solver import MPI_ENVIRONMENT, Options, Run, program
+from verification.codes.mappm import MPI_ENVIRONMENT, Options, program
+from verification.protocol.run import Run
 
 PAPER_BOX, PAPER_DENSITY = (177.0, 2816.0), 12.83  # rcut; PPs to the square of rcut
 PAPER_PROCESSES = (1, 4, 16, 64, 256, 1024)

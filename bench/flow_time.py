@@ -25,8 +25,9 @@ from bench.largest_step import VISCOSITY
 from bench.meter import Broken, Meter, Speed, median_rate, median_ratio, run_benchmark
 from bench.solids import GAS_SOLID, QUICK_SUSPENSIONS, SUSPENSIONS, UNSAMPLED, Suspension
 from reference.periodic_fluid import Fluid
-from verification.errors import SolverError
-from verification.solver import ROOT, Options, build_folder, run
+from verification.codes.mappm import Options, build_folder, run
+from verification.protocol.errors import SolverError
+from verification.protocol.machine import ROOT
 
 STOKES = ROOT / "cases" / "cylinder_stokes" / "case.toml"
 PROCESSES = (1, 2)

@@ -23,7 +23,7 @@ from bench.codes import Code
 from bench.meter import Broken
 from reference.periodic_fluid import ABC, VORTICES, WAVE, Fluid
 from reference.scripted import Failed
-from verification.errors import SolverError
+from verification.protocol.errors import SolverError
 
 VISCOSITY = 0.01  # in c h
 TOLERANCE = 0.01  # of a rate of decay

@@ -13,9 +13,8 @@ from pathlib import Path
 from typing import Protocol
 
 from reference.scripted import Failed
-from verification.errors import SolverError
-from verification.provenance import processor
-from verification.runner import cores
+from verification.protocol.errors import SolverError
+from verification.protocol.machine import cores, processor
 
 
 class Broken(RuntimeError):

@@ -17,11 +17,13 @@ from pathlib import Path
 from bench.codes import own_speed
 from bench.meter import Broken, Meter, Speed, median_rate, median_ratio, run_benchmark
 from bench.speed import FLUIDS, QUICK_FLUIDS, scene_of, steps_for
-from verification.case import Case
-from verification.judge import measures
-from verification.manifest import find_case
-from verification.references import resolved
-from verification.solver import ROOT, Options, Run, run
+from verification.codes.mappm import Options, run
+from verification.protocol.machine import ROOT
+from verification.protocol.run import Run
+from verification.suite.case import Case
+from verification.suite.judge import measures
+from verification.suite.manifest import find_case
+from verification.suite.references import resolved
 
 SINGLE = 'fluid.precision="single"'
 FLOATING_SUMS = ROOT / "build" / "floating-sums" / "bin" / "bench-pair_numbers"

@@ -23,9 +23,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from bench.meter import Broken, keep
-from verification.errors import SolverError
-from verification.provenance import commit
-from verification.solver import build_folder, program
+from verification.codes.mappm import build_folder, program
+from verification.protocol.errors import SolverError
+from verification.protocol.machine import commit
 
 FLUIDS = ("fluid_2d_39", "fluid_3d_77")
 SIDES, QUICK_SIDES, COUNTED_SIDES = (320, 48), (64, 16), (128, 24)  # particles along a side, in the plane and in space

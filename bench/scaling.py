@@ -19,9 +19,10 @@ from pathlib import Path
 from bench.codes import SCENE
 from bench.meter import Broken, keep
 from bench.speed import scene_of
-from verification.errors import SolverError
-from verification.runner import cores
-from verification.solver import ROOT, Options, Run, run
+from verification.codes.mappm import Options, run
+from verification.protocol.errors import SolverError
+from verification.protocol.machine import ROOT, cores
+from verification.protocol.run import Run
 
 PAPER = ROOT / "cases" / "gas_solid_paper" / "case.toml"
 MANY = 64  # processes, on however few cores

@@ -19,7 +19,9 @@ from pathlib import Path
 from bench.meter import Broken, Meter, Speed, median_rate, median_ratio, run_benchmark
 from bench.speed import steps_for
 from reference.periodic_fluid import Fluid
-from verification.solver import ROOT, Options, Run, run
+from verification.codes.mappm import Options, run
+from verification.protocol.machine import ROOT
+from verification.protocol.run import Run
 
 FLUID = ROOT / "cases" / "sph_peer" / "case.toml"
 GAS_SOLID = ROOT / "cases" / "gas_solid_small" / "case.toml"

@@ -22,7 +22,7 @@ from bench.codes import MAPPM, WITHOUT_TRANSPORT, Code, own_speed, peers
 from bench.largest_step import VISCOSITY, Found, largest_step
 from bench.meter import Broken, Meter, Speed, median_rate, median_ratio, run_benchmark
 from reference.periodic_fluid import Fluid
-from verification.solver import Run
+from verification.protocol.run import Run
 
 SKIPPED_CODE = 77  # what ctest takes for skipped
 PROCESSES = (1, 2)

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from reference.live import Quantity, Result, checksum_of
 from reference.periodic_fluid import Fluid
 from reference.scripted import Finished
+from verification.protocol.quantity import Quantity, Result, checksum_of
 
 DUMP = "dump.txt"
 ROUNDING = 1e-9  # differences of velocities below this are of rounding alone, over some hundred steps

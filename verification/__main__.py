@@ -6,14 +6,14 @@ import tempfile
 import textwrap
 from pathlib import Path
 
-from verification.case import TIERS, Case
-from verification.compare import compare, explain
-from verification.errors import CaseError, SolverError
-from verification.manifest import all_cases, find_cases
-from verification.result import run_case, run_with
-from verification.runner import cores
-from verification.solver import ROOT, Options, run
-from verification.stored import store
+from verification.bits.compare import compare, explain
+from verification.codes.mappm import Options, run
+from verification.protocol.errors import CaseError, SolverError
+from verification.protocol.machine import ROOT, cores
+from verification.report.stored import store
+from verification.suite.case import TIERS, Case
+from verification.suite.manifest import all_cases, find_cases
+from verification.suite.result import run_case, run_with
 
 SKIPPED_CODE = 77  # what ctest takes for skipped
 
@@ -120,7 +120,7 @@ def main() -> int:
         case "compare-bits":
             return compare_bits(arguments.scene, arguments.ranks, arguments.steps, arguments.every, arguments.build)
         case "report":
-            from verification.report import write_report  # drawing libraries load slowly
+            from verification.report.report import write_report  # drawing libraries load slowly
 
             return write_report(arguments.tier, arguments.out, arguments.publish)
 

@@ -1,5 +1,5 @@
-"""What the report draws; the decay itself is measured by verification/observables.py."""
+"""What the report draws; the decay itself is measured by verification/measures/observables.py."""
 
-from verification.flows import decay_charts as curves
+from verification.measures.flows import decay_charts as curves
 
 __all__ = ["curves"]

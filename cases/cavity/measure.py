@@ -5,11 +5,11 @@ from functools import cache
 import numpy as np
 
 from reference.published.cavity import centre_line
-from verification.curve import Chart, Curve
-from verification.fits import extrapolate, values_at
-from verification.histories import settling
-from verification.observables import SETTLED, Measured
-from verification.solver import Run, read_time
+from verification.measures.curve import Chart, Curve
+from verification.measures.fits import extrapolate, values_at
+from verification.measures.histories import settling
+from verification.measures.observables import SETTLED, Measured
+from verification.protocol.run import Run, read_time
 
 RADIUS = 3.0  # of the fit, in spacings
 LATE = 0.8  # of the run: later snapshots count

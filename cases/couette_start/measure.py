@@ -5,9 +5,9 @@ from functools import partial
 
 import numpy as np
 
-from verification.curve import Chart, Curve
-from verification.observables import Measured
-from verification.solver import Run, read_time
+from verification.measures.curve import Chart, Curve
+from verification.measures.observables import Measured
+from verification.protocol.run import Run, read_time
 
 TIMES = (0.05, 0.1, 0.3, 1.0)  # nu t / H^2
 

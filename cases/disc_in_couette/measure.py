@@ -3,10 +3,10 @@
 import numpy as np
 
 from reference.stokes.channel import Disc, angular_velocity, angular_velocity_without_transpose
-from verification.curve import Chart, Curve
-from verification.observables import Measured
-from verification.series import Table, read_table
-from verification.solver import Run
+from verification.measures.curve import Chart, Curve
+from verification.measures.observables import Measured
+from verification.protocol.run import Run
+from verification.protocol.series import Table, read_table
 
 SETTLED = 0.005
 BLOCKS = 8

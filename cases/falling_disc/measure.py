@@ -12,10 +12,10 @@ import numpy as np
 
 from reference.stokes.square_array import square_array
 from reference.stokes.unsteady_array import slip_after_release, virtual_mass
-from verification.curve import Chart, Curve
-from verification.observables import Measured
-from verification.series import read_table
-from verification.solver import Run
+from verification.measures.curve import Chart, Curve
+from verification.measures.observables import Measured
+from verification.protocol.run import Run
+from verification.protocol.series import read_table
 
 TIMES = 24  # at which a run is compared with theory
 

@@ -16,9 +16,9 @@ from cases.falling_disc.measure import (
 )
 from reference.stokes.history import History
 from reference.stokes.laplace import invert
-from verification.curve import Chart, Curve
-from verification.observables import Measured
-from verification.solver import Run
+from verification.measures.curve import Chart, Curve
+from verification.measures.observables import Measured
+from verification.protocol.run import Run
 
 __all__ = ["curves", "from_drag_law", "from_history", "live_curves", "live_options", "relaxation_time",
            "terminal_velocity"]  # fmt: skip

@@ -1,8 +1,8 @@
 """Impacts along the normal, against the equation of the overlap and against LIGGGHTS."""
 
-from verification.curve import Chart
-from verification.impacts import family_chart, force_charts, measure, over_exact
-from verification.result import CaseResult
+from verification.measures.curve import Chart
+from verification.measures.impacts import family_chart, force_charts, measure, over_exact
+from verification.suite.result import CaseResult
 
 force_ratio = over_exact("contact_force", lambda exact: exact.force)
 time_ratio = over_exact("contact_time", lambda exact: exact.time)

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from reference.contact.scene import ContactScene
-from verification.curve import Chart
-from verification.impacts import family_chart, force_charts, measure, read_published
-from verification.result import CaseResult
+from verification.measures.curve import Chart
+from verification.measures.impacts import family_chart, force_charts, measure, read_published
+from verification.suite.result import CaseResult
 
 PUBLISHED = Path(__file__).parent / "published.csv"
 

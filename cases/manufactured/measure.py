@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from verification.curve import Chart, Curve
-from verification.flows import Field, fields, initial_flow
-from verification.observables import Measured
-from verification.solver import Run
+from verification.measures.curve import Chart, Curve
+from verification.measures.flows import Field, fields, initial_flow
+from verification.measures.observables import Measured
+from verification.protocol.run import Run
 
 
 def _errors(run: Run) -> tuple[np.ndarray, np.ndarray]:

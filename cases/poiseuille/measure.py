@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verification.curve import Chart, Curve
-from verification.fits import extrapolate
-from verification.histories import settling
-from verification.observables import SETTLED, Measured
-from verification.solver import Run
+from verification.measures.curve import Chart, Curve
+from verification.measures.fits import extrapolate
+from verification.measures.histories import settling
+from verification.measures.observables import SETTLED, Measured
+from verification.protocol.run import Run
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from reference.contact.motion import Motion
-from verification.curve import Chart
-from verification.impacts import accepted, centre_chart, measure, motion_of
-from verification.observables import Measured
-from verification.solver import Run
+from verification.measures.curve import Chart
+from verification.measures.impacts import accepted, centre_chart, measure, motion_of
+from verification.measures.observables import Measured
+from verification.protocol.run import Run
 
 PART = 5  # the last of so many parts of the run is the rest that is judged
 

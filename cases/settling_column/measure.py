@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from verification.curve import Chart
-from verification.impacts import centre_chart, measure
-from verification.solver import Run
+from verification.measures.curve import Chart
+from verification.measures.impacts import centre_chart, measure
+from verification.protocol.run import Run
 
 height = measure("height")
 middle = measure("middle")

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from verification.curve import Chart, Curve
-from verification.fits import Oscillation, damped_oscillation
-from verification.flows import amplitudes, initial_flow, viscosity_of
-from verification.observables import Measured
-from verification.solver import Run
+from verification.measures.curve import Chart, Curve
+from verification.measures.fits import Oscillation, damped_oscillation
+from verification.measures.flows import amplitudes, initial_flow, viscosity_of
+from verification.measures.observables import Measured
+from verification.protocol.run import Run
 
 
 def _declared(run: Run) -> tuple[float, float]:

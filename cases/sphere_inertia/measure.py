@@ -1,9 +1,9 @@
-"""What the report draws; the drag itself is measured by verification/observables.py."""
+"""What the report draws; the drag itself is measured by verification/measures/observables.py."""
 
-from verification.curve import Chart
-from verification.drag_families import drag_errors, drag_of_one_sphere
-from verification.histories import drag_history as curves
-from verification.result import CaseResult
+from verification.measures.curve import Chart
+from verification.measures.drag_families import drag_errors, drag_of_one_sphere
+from verification.measures.histories import drag_history as curves
+from verification.suite.result import CaseResult
 
 __all__ = ["curves", "family_curves", "stored_curves"]
 

@@ -1,5 +1,5 @@
-"""What the report draws; the drag itself is measured by verification/observables.py."""
+"""What the report draws; the drag itself is measured by verification/measures/observables.py."""
 
-from verification.histories import drag_history as curves
+from verification.measures.histories import drag_history as curves
 
 __all__ = ["curves"]

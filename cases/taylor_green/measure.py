@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from verification.curve import Chart, Curve
-from verification.flows import amplitudes, decay_chart, fields, initial_flow, viscosity_of
-from verification.observables import Measured
-from verification.solver import Run
+from verification.measures.curve import Chart, Curve
+from verification.measures.flows import amplitudes, decay_chart, fields, initial_flow, viscosity_of
+from verification.measures.observables import Measured
+from verification.protocol.run import Run
 
 
 def _rate(run: Run) -> float:

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 
-from verification.curve import Chart, Curve
-from verification.flows import initial_flow
-from verification.observables import Measured
-from verification.solver import Run
+from verification.measures.curve import Chart, Curve
+from verification.measures.flows import initial_flow
+from verification.measures.observables import Measured
+from verification.protocol.run import Run
 
 
 def reference() -> tuple[np.ndarray, np.ndarray]:

@@ -3,10 +3,10 @@
 import numpy as np
 
 from reference.published import look_up
-from verification.curve import Chart, Curve
-from verification.observables import Measured
-from verification.series import read_table
-from verification.solver import Run
+from verification.measures.curve import Chart, Curve
+from verification.measures.observables import Measured
+from verification.protocol.run import Run
+from verification.protocol.series import read_table
 
 DIAMETER = 0.015
 

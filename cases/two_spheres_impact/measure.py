@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from reference.scene import in_si
-from verification.curve import Chart, Curve
-from verification.observables import Measured
-from verification.series import read_table
-from verification.solver import Run
+from verification.measures.curve import Chart, Curve
+from verification.measures.observables import Measured
+from verification.protocol.run import Run
+from verification.protocol.scene import in_si
+from verification.protocol.series import read_table
 
 NEAR = 4  # samples that place the first and the last touch
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference.scene import in_si
+from verification.protocol.scene import in_si
 
 
 @dataclass(frozen=True)

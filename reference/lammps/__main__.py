@@ -7,8 +7,8 @@ from pathlib import Path
 
 from reference.lammps import sph
 from reference.lammps.program import installed, missing
-from reference.live import write_result
 from reference.scripted import Failed
+from verification.protocol.quantity import write_result
 
 
 def parser() -> argparse.ArgumentParser:

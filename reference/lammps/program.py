@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from reference.live import Result
 from reference.scripted import Finished, run_in
+from verification.protocol.quantity import Result
 
 CODE = "LAMMPS"
 SCRIPT = "in.lammps"

@@ -14,9 +14,9 @@ import math
 from pathlib import Path
 
 from reference.lammps.program import CODE, SCRIPT, run_script
-from reference.live import Result
 from reference.periodic_fluid import Fluid, box_of, start_of
 from reference.sph_peer import Peer, add_options, fluid_of, peer_result
+from verification.protocol.quantity import Result
 
 __all__ = ["PEER", "add_options", "fluid_of", "run"]
 

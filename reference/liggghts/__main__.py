@@ -8,8 +8,8 @@ from pathlib import Path
 
 from reference.liggghts import fall, impact, sph
 from reference.liggghts.program import Failed, installed, missing
-from reference.live import Result, write_result
-from reference.scene import read_scene
+from verification.protocol.quantity import Result, write_result
+from verification.protocol.scene import read_scene
 
 
 def parser() -> argparse.ArgumentParser:

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from reference.live import Level, Quantity, Result, checksum_of
 from reference.liggghts.program import CODE, SCRIPT, run_script
-from reference.scene import in_si
+from verification.protocol.quantity import Level, Quantity, Result, checksum_of
+from verification.protocol.scene import in_si
 
 ROWS = 400  # of the table
 STEPS = (50_000, 100_000)  # of the two levels

@@ -18,7 +18,7 @@ import numpy as np
 from reference.contact.motion import IMPACT, REST, Motion, read_motion
 from reference.contact.scene import Body, ContactScene, contact_scene
 from reference.liggghts.program import CODE, SCRIPT, run_script
-from reference.live import Quantity, Result, checksum_of
+from verification.protocol.quantity import Quantity, Result, checksum_of
 
 DUMP = "dump.txt"
 TABLE = "table.csv"

@@ -3,8 +3,8 @@
 import shutil
 from pathlib import Path
 
-from reference.live import Result
 from reference.scripted import Failed, Finished, run_in
+from verification.protocol.quantity import Result
 
 __all__ = ["Failed", "Finished", "installed", "missing", "run_script"]
 

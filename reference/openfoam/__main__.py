@@ -7,7 +7,6 @@ import tempfile
 from datetime import date
 from pathlib import Path
 
-from reference.live import write_result
 from reference.openfoam.bodies import bodies_problem
 from reference.openfoam.cell import cell_of, read_cell
 from reference.openfoam.drag import drag_problem
@@ -15,7 +14,7 @@ from reference.openfoam.errors import InputError
 from reference.openfoam.ladder import Options, Problem, check_meshes, solve
 from reference.openfoam.run import FailedRun, missing_of
 from reference.openfoam.store import Stored, StoredLevel, find_stored, read_stored, stored_file, write_stored
-
+from verification.protocol.quantity import write_result
 
 LEVELS = "plane: cells along a side (drag), along a quarter of a disc (bodies); space: along half an edge of the cell"
 

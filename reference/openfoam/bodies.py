@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from reference.live import checksum_of
 from reference.openfoam import plane_mesh, space_mesh
 from reference.openfoam.case_files import Steady, write_case
 from reference.openfoam.cell import Cell
@@ -13,6 +12,7 @@ from reference.openfoam.errors import InputError
 from reference.openfoam.ladder import Problem
 from reference.openfoam.level import LevelRun, measure
 from reference.openfoam.shift import clear_cuts
+from verification.protocol.quantity import checksum_of
 
 CLEAR = 0.05  # of a radius, from a surface to a side of the cell
 SMALLEST = {2: 12, 3: 6}  # coarser meshes do not converge

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from reference.openfoam.errors import InputError
-from reference.scene import in_si, read_scene
+from verification.protocol.scene import in_si, read_scene
 
 SHAPES = {2: "disc", 3: "sphere"}
 

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 
-from reference.live import Level, Quantity, Result
 from reference.openfoam import read
 from reference.openfoam.cell import Cell
 from reference.openfoam.errors import InputError
@@ -18,6 +17,7 @@ from reference.openfoam.level import LevelRun
 from reference.openfoam.richardson import extrapolate
 from reference.openfoam.run import FailedRun, missing_of
 from reference.openfoam.store import Stored, disagreement
+from verification.protocol.quantity import Level, Quantity, Result
 
 CODE = "OpenFOAM"
 TABLE = "table.csv"

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from reference.live import checksum_of
 from reference.openfoam import read
 from reference.openfoam.blocks import block_mesh_dict, mesh_of
 from reference.openfoam.case_files import Solver, steady_for, write_case
 from reference.openfoam.cell import Cell
 from reference.openfoam.run import run, say
+from verification.protocol.quantity import checksum_of
 
 DRIFT = 1e-4  # of the drag over the last tenth of a steady run, relative
 BALANCE = 1e-5  # between the force on the surface and the body force, relative

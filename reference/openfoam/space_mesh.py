@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from reference.openfoam.blocks import BODY, box_mesh, block_mesh_dict
+from reference.openfoam.blocks import BODY, block_mesh_dict, box_mesh
 from reference.openfoam.case_files import foam_file
 from reference.openfoam.run import run
 

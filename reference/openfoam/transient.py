@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from reference.live import checksum_of
 from reference.openfoam import read
 from reference.openfoam.case_files import Transient
 from reference.openfoam.cell import Cell
 from reference.openfoam.level import LevelRun, drag_scale, make
 from reference.openfoam.run import run, say
+from verification.protocol.quantity import checksum_of
 
 COURANT = 0.4  # of the superficial velocity in the cells at the wall; they widen outwards, where the flow is faster
 DIFFUSION = 1.0  # nu step / width^2 of the cells at the wall; above it the flow diverges

@@ -14,7 +14,7 @@ TABLES = {
 
 
 def look_up(name: str, scene: dict) -> Published:
-    """The figure of table `name` for a scene, as reference.scene reads it; fluid.reference_velocity is the velocity U.
+    """The figure of table `name` for a scene, as verification.protocol.scene reads it; fluid.reference_velocity is the velocity U.
 
     Throws KeyError on a name that is not known, ValueError where the scene lies outside the range of the table.
     """

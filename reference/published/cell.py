@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from reference.scene import in_si
+from verification.protocol.scene import in_si
 
 
 @dataclass(frozen=True)

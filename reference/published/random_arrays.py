@@ -4,7 +4,7 @@ import math
 
 from reference.published.cell import refuse_outside
 from reference.published.value import Published
-from reference.scene import in_si
+from verification.protocol.scene import in_si
 
 SOURCE = ("Hill, Koch and Ladd, J. Fluid Mech. 448, 2001, 243-278, as put by Koch and Hill, Annu. Rev. Fluid Mech. 33, "
           "2001, 619-647: F_0 + F_3 Re_R")

@@ -19,9 +19,9 @@ from pathlib import Path
 from tests.mutation.detectors import Detector, Result, run_detector
 from tests.mutation.manifest import ROOT, ManifestError, Mutant, read_manifests
 from tests.mutation.tree import BUILD, FOLDER, BuildError, build_tree, write_planted, write_tree
-from verification.compare import compare
-from verification.errors import SolverError
-from verification.solver import Options
+from verification.bits.compare import compare
+from verification.codes.mappm import Options
+from verification.protocol.errors import SolverError
 
 PUBLISHED = ROOT / "reports" / "published" / "mutation.json"
 LONGEST = 300.0  # seconds that a detector may take without a fault

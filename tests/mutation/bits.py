@@ -4,9 +4,9 @@ import sys
 from pathlib import Path
 
 from tests.mutation.manifest import ROOT
-from verification.compare import compare
-from verification.errors import SolverError
-from verification.solver import Options
+from verification.bits.compare import compare
+from verification.codes.mappm import Options
+from verification.protocol.errors import SolverError
 
 
 def main(out: str, scene: str, ranks: str, steps: str, domains: str | None = None) -> int:

@@ -21,7 +21,7 @@ from pathlib import Path
 
 from tests.mutation.manifest import ROOT, ManifestError
 from tests.mutation.tree import BUILD
-from verification.solver import MPI_ENVIRONMENT
+from verification.codes.mappm import MPI_ENVIRONMENT
 
 # Number of words after the kind: least and most.
 KINDS = {"case": (1, 99), "bits": (3, 4), "pytest": (1, 1), "gtest": (2, 2), "mpi": (3, 3)}

@@ -10,9 +10,9 @@ from bench.largest_step import flows_of, trial_of
 from reference.lammps.__main__ import main
 from reference.lammps.program import MISSING, installed
 from reference.lammps.sph import PEER
-from reference.live import read_result
 from reference.periodic_fluid import Fluid
 from reference.scripted import Failed
+from verification.protocol.quantity import read_result
 
 pytestmark = pytest.mark.skipif(not installed(), reason=MISSING)
 

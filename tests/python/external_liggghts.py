@@ -9,7 +9,7 @@ import pytest
 
 from reference.liggghts.__main__ import main
 from reference.liggghts.program import MISSING, installed
-from reference.live import Result, read_result
+from verification.protocol.quantity import Result, read_result
 
 ROOT = Path(__file__).parents[2]
 

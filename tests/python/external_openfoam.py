@@ -7,15 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reference.live import Result, read_result
 from reference.openfoam import case_files, store
 from reference.openfoam.__main__ import main
-from reference.openfoam.bodies import HOW_TO_GET
-from reference.openfoam.bodies import bodies_problem
+from reference.openfoam.bodies import HOW_TO_GET, bodies_problem
 from reference.openfoam.cell import Cell, cell_of
 from reference.openfoam.drag import drag_problem
 from reference.openfoam.read import vectors
 from reference.openfoam.run import missing_of, run
+from verification.protocol.quantity import Result, read_result
 
 EXACT = 24.831675  # F / (mu U) at a solids fraction of 0.1, Stokes flow: a collocation solver without a mesh
 CELL = cell_of(2, 0.1, 0.1)

@@ -12,9 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from verification.equivalence import Equivalence, Variant, read_equivalence, run_matrix
-from verification.errors import SolverError
-from verification.solver import INSTRUCTION_SETS, ROOT, Options, best_instruction_set, run
+from verification.bits.equivalence import Equivalence, read_equivalence, run_matrix
+from verification.codes.mappm import INSTRUCTION_SETS, Options, best_instruction_set, run
+from verification.protocol.errors import SolverError
+from verification.protocol.machine import ROOT
 
 PORTABLE = ROOT / "build" / "portable"
 SCENE = ROOT / "cases" / "crossing_2d" / "case.toml"

@@ -8,8 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from verification.conservation import conservation
-from verification.solver import ROOT, Options, Run, run
+from verification.bits.conservation import conservation
+from verification.codes.mappm import Options, run
+from verification.protocol.machine import ROOT
+from verification.protocol.run import Run
 
 
 @pytest.mark.parametrize(

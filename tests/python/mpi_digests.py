@@ -9,9 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.compare import compare_runs
-from verification.series import Table, read_table
-from verification.solver import ROOT, Options, Run, run
+from verification.bits.compare import compare_runs
+from verification.codes.mappm import Options, run
+from verification.protocol.machine import ROOT
+from verification.protocol.run import Run
+from verification.protocol.series import Table, read_table
 
 SCENES = Path(__file__).parent / "scenes"
 STEPS = 1000

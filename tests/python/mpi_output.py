@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 import pyvista
 
-from verification.solver import MPI_ENVIRONMENT, ROOT, Options, program, run, start
+from verification.codes.mappm import MPI_ENVIRONMENT, Options, program, run, start
+from verification.protocol.machine import ROOT
 
 SCENE = ROOT / "cases" / "crossing_2d" / "case.toml"
 LONG_SCENE = ROOT / "cases" / "gas_solid_small" / "case.toml"

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import h5py
 
-from verification.solver import ROOT, Options, run
+from verification.codes.mappm import Options, run
+from verification.protocol.machine import ROOT
 
 SCENE = ROOT / "cases" / "crossing_2d" / "case.toml"
 COPY = ROOT / "build" / "planted"

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from bench.flow_time import NEW, OLD, QUICK_SCENES, FlowTime, figures_of
-from verification.solver import build_folder
+from verification.codes.mappm import build_folder
 
 ROOT = Path(__file__).parents[2]
 

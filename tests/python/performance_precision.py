@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from bench import precision
-from verification.solver import build_folder
-from verification.speed_charts import precisions
+from verification.codes.mappm import build_folder
+from verification.report.speed_charts import precisions
 
 ROOT = Path(__file__).parents[2]
 

@@ -10,7 +10,7 @@ import pytest
 
 from bench import roofline
 from bench.roofline import PARTS, Costs, apart, figures_of
-from verification.speed_charts import bounds
+from verification.report.speed_charts import bounds
 
 ROOT = Path(__file__).parents[2]
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from bench import cost_model, scaling
-from bench.scaling import Point
 from bench.meter import Broken
-from verification.speed_charts import costs, scalings
+from bench.scaling import Point
+from verification.report.speed_charts import costs, scalings
 
 ROOT = Path(__file__).parents[2]
 

@@ -10,7 +10,7 @@ import pytest
 
 from bench import solids
 from bench.solids import Cost
-from verification.solid_charts import costs_of_solids
+from verification.report.solid_charts import costs_of_solids
 
 ROOT = Path(__file__).parents[2]
 

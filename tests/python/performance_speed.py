@@ -11,7 +11,7 @@ import pytest
 from bench import codes, meter, speed
 from bench.codes import peers
 from bench.meter import Broken, Meter, Speed
-from verification.speed_charts import speeds
+from verification.report.speed_charts import speeds
 
 ROOT = Path(__file__).parents[2]
 

@@ -15,7 +15,8 @@ import pytest
 
 from tests.robustness import processes
 from tests.robustness.kill import SCENE
-from verification.solver import MPI_ENVIRONMENT, Options, Run, run, start
+from verification.codes.mappm import MPI_ENVIRONMENT, Options, run, start
+from verification.protocol.run import Run
 
 INPUT = 2
 RANKS = (0, 1, 2, 3)

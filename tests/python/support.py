@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from verification.manifest import find_case
-from verification.judge import CORRECT, Outcome
-from verification.result import run_with
-from verification.solver import Run
+from verification.protocol.run import Run
+from verification.suite.judge import CORRECT, Outcome
+from verification.suite.manifest import find_case
+from verification.suite.result import run_with
 
 
 def judged(name: str, folder: Path, *overrides: str) -> tuple[Run, dict[str, Outcome]]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from verification.solver import Run
+from verification.protocol.run import Run
 
 
 @dataclass(frozen=True)

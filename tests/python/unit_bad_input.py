@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.solver import MPI_ENVIRONMENT, Options, best_instruction_set, program, run
+from verification.codes.mappm import MPI_ENVIRONMENT, Options, best_instruction_set, program, run
 
 SCENES = Path(__file__).parent / "scenes"
 SCENE = SCENES / "random_discs.toml"

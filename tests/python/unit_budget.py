@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from verification.budget import body_work
-from verification.series import Table
+from verification.measures.budget import body_work
+from verification.protocol.series import Table
 
 TIME = np.linspace(0.0, 2.0, 5)
 

@@ -10,7 +10,7 @@ from reference.stokes.channel import (
     angular_velocity_without_transpose,
     stokeslets,
 )
-from verification.manifest import find_case
+from verification.suite.manifest import find_case
 
 PERIOD = 1.0
 

@@ -17,16 +17,9 @@ import numpy as np
 import pytest
 import pyvista
 
-from verification.solver import (
-    INSTRUCTION_SETS,
-    MPI_ENVIRONMENT,
-    ROOT,
-    Options,
-    Run,
-    best_instruction_set,
-    program,
-    run,
-)
+from verification.codes.mappm import INSTRUCTION_SETS, MPI_ENVIRONMENT, Options, best_instruction_set, program, run
+from verification.protocol.machine import ROOT
+from verification.protocol.run import Run
 
 SCENE = ROOT / "cases" / "crossing_2d" / "case.toml"
 PATIENT = {"OMPI_MCA_odls_base_sigkill_timeout": "10"}  # mpirun kills a second after SIGTERM: short on a loaded machine

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from verification.series import read_table
-from verification.solver import Options, run, start
+from verification.codes.mappm import Options, run, start
+from verification.protocol.series import read_table
 
 SCENE = Path(__file__).parent / "scenes" / "bounce.toml"
 RANGE = 3

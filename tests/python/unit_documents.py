@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.solver import ROOT
+from verification.protocol.machine import ROOT
 
 WIDTH = 120
 GENERATED = {ROOT / "reports" / "published" / "summary.md"}

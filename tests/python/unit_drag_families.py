@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from verification.case import Observable
-from verification.drag_families import by_reynolds, drag_errors, drag_of_one_sphere
-from verification.judge import Outcome
-from verification.observables import Measured
+from verification.measures.drag_families import by_reynolds, drag_errors, drag_of_one_sphere
+from verification.measures.observables import Measured
+from verification.suite.case import Observable
+from verification.suite.judge import Outcome
 
 # Of a simple cubic array in Stokes flow: Zick and Homsy, J. Fluid Mech. 115, 1982, 13-26.
 STOKES = {0.216: 7.442, 0.027: 2.008, 0.125: 4.292, 0.064: 2.810}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from verification.extrapolation import correlations, hindrance, isolated
+from verification.measures.extrapolation import correlations, hindrance, isolated
 
 FRACTIONS = [0.027, 0.064, 0.125, 0.216]
 

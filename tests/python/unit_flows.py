@@ -7,13 +7,13 @@ import h5py
 import numpy as np
 import pytest
 
-from verification import flows
-from verification.manifest import find_case
-from verification.fits import damped_oscillation
-from verification.flows import Flow, read_flow
-from verification.judge import measures
-from verification.observables import viscosity
-from verification.solver import Run
+from verification.measures import flows
+from verification.measures.fits import damped_oscillation
+from verification.measures.flows import Flow, read_flow
+from verification.measures.observables import viscosity
+from verification.protocol.run import Run
+from verification.suite.judge import measures
+from verification.suite.manifest import find_case
 
 PLANE, SPACE = [1.0, 1.0], [1.0, 1.0, 1.0]
 WAVE = {"wave": {"amplitude": 0.5, "direction": "z", "gradient": "x", "mode": 3}}

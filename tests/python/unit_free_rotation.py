@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from verification.compare import compare
-from verification.solver import Options
+from verification.bits.compare import compare
+from verification.codes.mappm import Options
 
 SCENE = Path(__file__).parent / "scenes" / "free_rotation.toml"
 

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from verification.solver import MPI_ENVIRONMENT, ROOT, build_folder
+from verification.codes.mappm import MPI_ENVIRONMENT, build_folder
+from verification.protocol.machine import ROOT
 
 PROJECT = ROOT / "tests" / "install"
 SCENE = ROOT / "tests" / "python" / "scenes" / "random_discs.toml"  # in the plane, with solids in contact

@@ -9,7 +9,7 @@ from bench.largest_step import Found, flows_of, largest_useful, left_at_most, ra
 from bench.meter import Broken
 from reference.periodic_fluid import Fluid
 from reference.scripted import Failed
-from verification.errors import SolverError
+from verification.protocol.errors import SolverError
 
 
 def off_beyond(limit: float, by: float = 0.02):

@@ -7,7 +7,7 @@ import pytest
 from reference.liggghts import fall
 from reference.liggghts.__main__ import main, parser, scene_of
 from reference.liggghts.program import MISSING
-from reference.live import read_result
+from verification.protocol.quantity import read_result
 
 SCENE = """
 [box]

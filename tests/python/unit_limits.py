@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from lattice_theory import KERNELS, Lattice, Law, first_instability
-from verification.errors import SolverError
-from verification.solver import Options, run
+
+from verification.codes.mappm import Options, run
+from verification.protocol.errors import SolverError
 
 REACH = 3.0
 LATTICES = {2: ("square", "hexagonal"), 3: ("cubic", "face-centred")}

@@ -12,18 +12,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reference.live import Quantity, Result, read_result, write_result
-from reference.scene import in_si, with_overrides
-from verification.case import Observable
-from verification.errors import CaseError
-from verification.figures import stored_figures
-from verification.judge import CORRECT, OPEN, SKIPPED, WRONG, Outcome, _at_zero, judge, own
-from verification.ladder import extrapolated
-from verification.manifest import find_cases, read_cases
-from verification.observables import Measured
-from verification.references import LiveRun, live_command, resolved
-from verification.runner import Job, jobs_of
-from verification.stored import store, stored_families
+from verification.measures.observables import Measured
+from verification.protocol.errors import CaseError
+from verification.protocol.quantity import Quantity, Result, read_result, write_result
+from verification.protocol.scene import in_si, with_overrides
+from verification.report.figures import stored_figures
+from verification.report.stored import store, stored_families
+from verification.suite.case import Observable
+from verification.suite.judge import CORRECT, OPEN, SKIPPED, WRONG, Outcome, _at_zero, judge, own
+from verification.suite.ladder import extrapolated
+from verification.suite.manifest import find_cases, read_cases
+from verification.suite.references import LiveRun, live_command, resolved
+from verification.suite.runner import Job, jobs_of
 
 MANIFEST = """
 name = "x"
@@ -231,7 +231,7 @@ tier = "full"
 
 def test_a_tier_of_two_levels_is_not_extrapolated(tmp_path: Path) -> None:
     (tmp_path / "case.toml").write_text(LEVELS)
-    (tmp_path / "measure.py").write_text("""from verification.observables import Measured
+    (tmp_path / "measure.py").write_text("""from verification.measures.observables import Measured
 
 def found(run):
     return Measured(50.0 + run.scene["fluid"]["spacing"], 0.0)

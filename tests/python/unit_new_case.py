@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.solver import ROOT
+from verification.protocol.machine import ROOT
 
 MANIFEST = """
 name = "drifting"
@@ -50,8 +50,8 @@ sample = 10
 MEASURE = '''
 """Mean velocity at the end over that at the start."""
 
-from verification.curve import Chart, Curve
-from verification.observables import Measured
+from verification.measures.curve import Chart, Curve
+from verification.measures.observables import Measured
 
 
 def mean_velocity(run):

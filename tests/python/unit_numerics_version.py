@@ -8,7 +8,8 @@ import json
 import subprocess
 from pathlib import Path
 
-from verification.solver import ROOT, Options, program, run
+from verification.codes.mappm import Options, program, run
+from verification.protocol.machine import ROOT
 
 STORED = Path(__file__).parent / "numerics_digests.json"
 SINGLE = "fluid.precision=single"

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from verification.observables import drag, sideways
-from verification.series import Table
+from verification.measures.observables import drag, sideways
+from verification.protocol.series import Table
 
 TIME = np.linspace(0.0, 10.0, 101)
 

@@ -12,11 +12,11 @@ from reference.lammps.__main__ import main
 from reference.lammps.sph import PEER as LAMMPS
 from reference.lammps.sph import rest_density
 from reference.liggghts.sph import PEER as LIGGGHTS
-from reference.live import read_result
 from reference.periodic_fluid import ABC, VORTICES, WAVE, Fluid, energies_of, loop_seconds, velocity_of
 from reference.scripted import Failed
 from reference.sph_peer import energies_script, state_script, timed_script
-from verification.solver import Options
+from verification.codes.mappm import Options
+from verification.protocol.quantity import read_result
 
 LOG = """LAMMPS (22 Jul 2025 - Update 4)
 Loop time of 1e-07 on 1 procs for 0 steps with 4096 atoms

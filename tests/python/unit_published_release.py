@@ -12,7 +12,7 @@ from cases.falling_sphere.measure import added_mass, with_history
 from reference.stokes.history import History
 from reference.stokes.square_array import square_array
 from reference.stokes.unsteady_array import impedance, virtual_mass
-from verification.solver import Run
+from verification.protocol.run import Run
 
 SCENE = """
 [box]

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from verification.errors import SolverError
-from verification.solver import Options, run
+from verification.codes.mappm import Options, run
+from verification.protocol.errors import SolverError
 
 
 @pytest.mark.parametrize("ranks", [0, 1])

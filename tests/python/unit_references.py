@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from verification.manifest import all_cases, find_case
+from verification.suite.manifest import all_cases, find_case
 
 
 def reference(case: str, name: str) -> float:

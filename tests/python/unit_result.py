@@ -9,10 +9,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from verification import runner
-from verification.manifest import find_case
-from verification.result import CaseResult, Exactness, run_with
-from verification.solver import ROOT
+from verification.protocol.machine import ROOT
+from verification.suite import runner
+from verification.suite.manifest import find_case
+from verification.suite.result import CaseResult, Exactness, run_with
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.solver import Options, run, start
+from verification.codes.mappm import Options, run, start
 
 SCENE = Path(__file__).parent / "scenes" / "bounce.toml"
 INPUT = 2

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from verification.solver import MPI_ENVIRONMENT, Options, Run, run
+from verification.codes.mappm import MPI_ENVIRONMENT, Options, run
+from verification.protocol.run import Run
 
 SCENE = Path(__file__).parent / "scenes" / "random_discs.toml"
 OUTPUTS = ("output.snapshot=10", "output.checkpoint=10")

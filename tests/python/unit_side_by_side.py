@@ -6,11 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reference.live import Result
-from verification.chapters import chapters_of, families_of
-from verification.figures import CaseFigures
-from verification.references import LiveRun
-from verification.side_by_side import compare_fields, speeds
+from verification.protocol.quantity import Result
+from verification.report.chapters import chapters_of, families_of
+from verification.report.figures import CaseFigures
+from verification.report.side_by_side import compare_fields, speeds
+from verification.suite.references import LiveRun
 
 SIDE, RADIUS = 2.0, 0.4
 SCENE = {"box": {"size": [SIDE, SIDE]}, "fluid": {"spacing": 0.05},

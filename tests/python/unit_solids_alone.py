@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.solver import Options, run, start
+from verification.codes.mappm import Options, run, start
 
 SCENES = Path(__file__).parent / "scenes"
 BOUNCE = SCENES / "bounce.toml"

@@ -7,8 +7,8 @@ import re
 import numpy as np
 import pytest
 
-from verification.manifest import find_case
-from verification.solver import ROOT
+from verification.protocol.machine import ROOT
+from verification.suite.manifest import find_case
 
 spec = importlib.util.spec_from_file_location("taylor_green", ROOT / "reference/spectral/taylor_green.py")
 spectral = importlib.util.module_from_spec(spec)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.solver import MPI_ENVIRONMENT, Options, program, run, start
+from verification.codes.mappm import MPI_ENVIRONMENT, Options, program, run, start
 
 SCENE = Path(__file__).parent / "scenes" / "random_discs.toml"
 LONGEST_PATH = 4095  # bytes, of Linux

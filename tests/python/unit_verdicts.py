@@ -6,16 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.case import Observable, Vary
-from verification.errors import CaseError
-from verification.history import changes
-from verification.judge import CONVERGING, CORRECT, NOT_CONVERGING, OPEN, STALLED, WRONG, Outcome, _varied
-from verification.ladder import converge, error_order, observed_order
-from verification.manifest import read_cases
-from verification.observables import Measured
-from verification.result import exactness
-from verification.runner import Job, jobs_of
-from verification.series import Table
+from verification.measures.observables import Measured
+from verification.protocol.errors import CaseError
+from verification.protocol.series import Table
+from verification.report.history import changes
+from verification.suite.case import Observable, Vary
+from verification.suite.judge import CONVERGING, CORRECT, NOT_CONVERGING, OPEN, STALLED, WRONG, Outcome, _varied
+from verification.suite.ladder import converge, error_order, observed_order
+from verification.suite.manifest import read_cases
+from verification.suite.result import exactness
+from verification.suite.runner import Job, jobs_of
 
 GIVEN = Observable("drag", "F", reference=50.0, uncertainty=0.0, source="nobody", goal=0.02)
 

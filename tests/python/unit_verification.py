@@ -6,15 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.case import Observable
-from verification.manifest import all_cases, read_cases
-from verification.compare import PairDifference, trace_differences
-from verification.equivalence import Row, read_equivalence
-from verification.errors import CaseError
-from verification.fits import decay_rate, extrapolate, relaxed
-from verification.judge import CORRECT, OPEN, WRONG, Outcome, measures
-from verification.observables import Measured
-from verification.series import first_difference, read_table
+from verification.bits.compare import PairDifference, trace_differences
+from verification.bits.equivalence import Row, read_equivalence
+from verification.measures.fits import decay_rate, extrapolate, relaxed
+from verification.measures.observables import Measured
+from verification.protocol.errors import CaseError
+from verification.protocol.series import first_difference, read_table
+from verification.suite.case import Observable
+from verification.suite.judge import CORRECT, OPEN, WRONG, Outcome, measures
+from verification.suite.manifest import all_cases, read_cases
 
 TIME = np.linspace(0.0, 10.0, 501)
 

@@ -5,11 +5,11 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-
 from synthetic import Fields, Snapshot, scattered, synthetic_run
-from verification.manifest import find_case
-from verification.fits import values_at
-from verification.judge import case_module
+
+from verification.measures.fits import values_at
+from verification.suite.judge import case_module
+from verification.suite.manifest import find_case
 
 TIME = np.linspace(0.0, 20.0, 401)
 

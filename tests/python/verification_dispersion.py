@@ -13,9 +13,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from lattice_theory import KERNELS, Lattice, Law, growth
-from verification.solver import Options, Run, read_points, run
+
+from verification.codes.mappm import Options, run
+from verification.protocol.run import Run, read_points
 
 NODES = 12  # along each axis
 LONG = 48  # along x, for waves so long that they are a flow

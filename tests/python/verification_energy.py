@@ -12,9 +12,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from lattice_theory import KERNELS, Lattice
-from verification.solver import Options, Run, run
+
+from verification.codes.mappm import Options, run
+from verification.protocol.run import Run
 
 REACH = 3.0
 SCENE = """

@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.solver import Options, Run, run
+from verification.codes.mappm import Options, run
+from verification.protocol.run import Run
 
 LONGEST = {2: 6000, 3: 1500}  # steps
 WEIGHT = 0.01  # rho g H / (rho c^2)

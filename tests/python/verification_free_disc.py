@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from verification.manifest import find_case
-from verification.observables import drag
-from verification.solver import Options, run
+from verification.codes.mappm import Options, run
+from verification.measures.observables import drag
+from verification.suite.manifest import find_case
 
 FREE = ("body.0.motion=free", "body.0.density=10.0", "force.solid=balance")
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.errors import SolverError
-from verification.solver import Options, run
+from verification.codes.mappm import Options, run
+from verification.protocol.errors import SolverError
 
 REACH, RADIUS = 3.0, 4.0  # dx
 DENSITIES = (1.0, 0.1, 0.01, 0.001)  # of the body over that of the fluid

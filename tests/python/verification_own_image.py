@@ -3,13 +3,13 @@
 There each disc is a solid of its own, and sees the others as such.
 """
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from verification.solver import Options, Run, run
+from verification.codes.mappm import Options, run
+from verification.protocol.run import Run
 
 CELL = (18.0, 12.0)  # two processes share it along x
 RADIUS = (80 / np.pi) ** 0.5  # of an area of 80 PPs, whole shells of the lattice; 1.9 dx lie between images along y

@@ -3,9 +3,11 @@
 from pathlib import Path
 
 import numpy as np
-
 from support import assert_correct, judged
-from verification.solver import ROOT, Options, Run, run
+
+from verification.codes.mappm import Options, run
+from verification.protocol.machine import ROOT
+from verification.protocol.run import Run
 
 
 def test_a_lattice_of_powers_of_two_stays_exactly_at_rest(tmp_path: Path) -> None:

@@ -8,7 +8,6 @@ wave by omega^2 dt, more than viscosity takes.
 from pathlib import Path
 
 import pytest
-
 from support import judged
 
 

@@ -19,7 +19,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tests.robustness import processes, summary
-from verification.solver import ROOT, Options, run, start
+from verification.codes.mappm import Options, run, start
+from verification.protocol.machine import ROOT
 
 SCENE = ROOT / "cases" / "crossing_2d" / "case.toml"
 STEPS, INTERVAL, SAMPLE = 600, 6, 2

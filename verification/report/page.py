@@ -1,0 +1,41 @@
+"""Fills the templates of reports/templates."""
+
+import base64
+import io
+from pathlib import Path
+
+import jinja2
+from PIL import Image
+
+from verification.protocol.machine import ROOT
+from verification.suite.judge import CORRECT, COVERAGE, NOT_CONVERGING, SKIPPED
+
+TEMPLATES = ROOT / "reports" / "templates"
+
+
+def _embedded(file: Path) -> str:
+    """A picture as a data address: SVG as it is, PNG as WebP, which is smaller."""
+    if file.suffix == ".svg":
+        return "data:image/svg+xml;base64," + base64.b64encode(file.read_bytes()).decode()
+    buffer = io.BytesIO()
+    Image.open(file).save(buffer, "WEBP", quality=86)
+    return "data:image/webp;base64," + base64.b64encode(buffer.getvalue()).decode()
+
+
+def _environment(escape: bool) -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES), undefined=jinja2.StrictUndefined, autoescape=escape,
+        trim_blocks=True, lstrip_blocks=True,
+    )
+    environment.filters |= {"embedded": _embedded, "number": lambda value: f"{value:.4g}", "g": lambda value: f"{value:g}"}
+    environment.globals |= {"CORRECT": CORRECT, "NOT_CONVERGING": NOT_CONVERGING, "SKIPPED": SKIPPED, "COVERAGE": COVERAGE}
+    return environment
+
+
+def write_page(content: dict, file: Path) -> None:
+    file.write_text(_environment(escape=True).get_template("report.html.j2").render(**content))
+
+
+def write_summary(content: dict, file: Path) -> None:
+    """For the repository: pictures lie beside it."""
+    file.write_text(_environment(escape=False).get_template("summary.md.j2").render(**content))

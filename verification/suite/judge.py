@@ -1,0 +1,250 @@
+"""Verdicts. CORRECT: against a reference. CONVERGING: over levels. UNCHANGED: bit by bit (equivalence.py).
+
+The tolerance of CORRECT is worked out from uncertainties (ASME V&V 20): |S - D| <= k sqrt(u_num^2 + u_ref^2 + u_input^2)
+with k = 2, and capped by the goal of the manifest, so that a noisy run cannot widen its way to a pass. All u are standard
+uncertainties; 95 % bounds are halved. Where the reference is 0 the observable is itself the error (a norm): its tolerance
+is the goal. Where a manifest offers no source of u_num, the goal alone decides, and the line says so.
+"""
+
+import functools
+import importlib.util
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+
+from verification.measures.observables import OBSERVABLES, Measured
+from verification.protocol.errors import CaseError
+from verification.protocol.run import Run
+from verification.suite.case import Case, Observable, Vary
+from verification.suite.ladder import SAFETY, Convergence, converge, error_order, extrapolated
+
+CORRECT, WRONG, OPEN, SKIPPED = "CORRECT", "WRONG", "NOT ACCEPTED", "SKIPPED"
+CONVERGING, NOT_CONVERGING, STALLED = "CONVERGING", "NOT CONVERGING", "STALLED"
+COVERAGE = 2.0  # k
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One observable: what was measured on the finest level, and on the levels below it."""
+
+    observable: Observable
+    measured: Measured
+    sources: dict[str, float] = field(default_factory=dict)  # standard uncertainties that make up u_num, absolute
+    spacings: tuple[float, ...] = ()  # of the levels, coarse to fine; the spacing or the step
+    levels: tuple[Measured, ...] = ()
+    convergence: Convergence | None = None
+    stalls: str = ""
+
+    @property
+    def scale(self) -> float:
+        """What errors and goals are relative to."""
+        reference = abs(self.observable.reference)
+        return reference if reference > 0 else 1.0
+
+    @property
+    def error(self) -> float:
+        """Relative to the reference; absolute where the reference is zero."""
+        return (self.measured.value - self.observable.reference) / self.scale
+
+    @property
+    def u_num(self) -> float:
+        """Relative, as the error is."""
+        return math.hypot(*self.sources.values()) / self.scale
+
+    @property
+    def uncertainty(self) -> float:
+        """u_val, relative: numerical, of the reference and of the inputs together."""
+        return math.hypot(self.u_num, self.u_ref, self.observable.input / self.scale)
+
+    @property
+    def by_goal_alone(self) -> bool:
+        return self.observable.reference == 0 or set(self.sources) <= {"time"}
+
+    @property
+    def tolerance(self) -> float:
+        if self.by_goal_alone:
+            return self.observable.goal
+        return min(self.observable.goal, COVERAGE * self.uncertainty)
+
+    @property
+    def objection(self) -> str:
+        """Why neither number may be held against the other, if so."""
+        return "; ".join(filter(None, (self.measured.objection, self.observable.unusable)))
+
+    @property
+    def verdict(self) -> str:
+        if self.observable.skipped:
+            return SKIPPED
+        if self.objection:
+            return OPEN
+        return CORRECT if abs(self.error) <= self.tolerance else WRONG
+
+    @property
+    def order(self) -> float:
+        """Observed order: of the error where the reference is exact, of the differences of levels where it is not."""
+        if len(self.levels) < 3:
+            return math.nan
+        if self.observable.uncertainty == 0.0:
+            return error_order(list(self.spacings), [level.value - self.observable.reference for level in self.levels])
+        return self.convergence.order
+
+    @property
+    def order_text(self) -> str:
+        return "none: not monotonic" if math.isnan(self.order) else f"{self.order:.2f}"
+
+    @property
+    def u_ref(self) -> float:
+        """Standard uncertainty of the reference, relative, as u_num is."""
+        return self.observable.uncertainty / self.scale
+
+    @property
+    def convergence_verdict(self) -> str:
+        """Empty where the manifest asks for none."""
+        if self.observable.order is None or self.verdict == SKIPPED:
+            return STALLED if self.stalls and len(self.levels) > 2 else ""
+        lowest, highest = self.observable.order
+        return CONVERGING if lowest <= self.order <= highest else NOT_CONVERGING
+
+    @property
+    def holds(self) -> bool:
+        """Nothing speaks against it. What was skipped neither passes nor fails."""
+        return self.verdict in (CORRECT, SKIPPED) and self.convergence_verdict != NOT_CONVERGING
+
+    def in_words(self, value: float) -> str:
+        return f"{100 * value:.2g} %" if self.observable.reference else f"{value:.2g}"
+
+    @property
+    def error_text(self) -> str:
+        return f"{100 * self.error:+.2f} %" if self.observable.reference else f"{self.error:.2g}"
+
+    @property
+    def reason(self) -> str:
+        """Of a verdict other than CORRECT."""
+        if self.verdict == OPEN:
+            return self.objection
+        if self.verdict == SKIPPED:
+            return self.observable.skipped
+        if self.verdict == CORRECT:
+            return ""
+        if math.isnan(self.error):
+            return "not a number"
+        if abs(self.error) > self.observable.goal:
+            return f"beyond the goal {self.in_words(self.observable.goal)}"
+        return f"within the goal, but not explained by its uncertainty (k u = {self.in_words(self.tolerance)})"
+
+    @property
+    def line(self) -> str:
+        observable, measured = self.observable, self.measured
+        if self.verdict == SKIPPED:
+            return f"{observable.symbol} = {measured.value:.6g} ({SKIPPED}: {self.reason})"
+        half_width = COVERAGE * self.u_num * self.scale if self.sources else measured.uncertainty
+        basis = f"goal {self.in_words(observable.goal)}"
+        if not self.by_goal_alone:
+            basis = f"k u = {self.in_words(COVERAGE * self.uncertainty)}, {basis}"
+        text = (
+            f"{observable.symbol} = {measured.value:.6g} +- {half_width:.2g} (reference {observable.reference:g} +- "
+            f"{observable.uncertainty:g}, error {self.error_text}, {self.verdict}"
+        )
+        text += f": {self.reason}" if self.reason else f" by {basis}"
+        if self.convergence_verdict:
+            text += f"; {self.convergence_verdict}, observed order {self.order_text}"
+            if observable.order:
+                text += f" in [{observable.order[0]:g}, {observable.order[1]:g}]"
+        return text + ")"
+
+
+def case_module(case: Case) -> ModuleType | None:
+    """measure.py in the folder of the case, if it has one."""
+    file = case.file.parent / "measure.py"
+    return _loaded(file) if file.exists() else None
+
+
+@functools.cache
+def _loaded(file: Path) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(f"case_{file.parent.name}", file)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def own(case: Case, name: str) -> Callable | None:
+    """A function that measure.py of the case offers beside its measures: curves, live_curves, family_curves,
+    stored_curves, live_options."""
+    return getattr(case_module(case), name, None)
+
+
+def measures(case: Case) -> dict[str, Callable[[Run], Measured]]:
+    """Observables by name: those of the case over those that all share."""
+    module = case_module(case)
+    return OBSERVABLES | ({name: value for name, value in vars(module).items() if callable(value)} if module else {})
+
+
+def measure(case: Case, observable: Observable, finished: Run) -> Measured:
+    known = measures(case)
+    if observable.name not in known:
+        raise CaseError(f"{case.file}: case.observable.name = {observable.name!r}: unknown; define it in "
+                        f"{case.file.parent / 'measure.py'} or take one of {', '.join(OBSERVABLES)}")
+    return known[observable.name](finished)
+
+
+def _height(case: Case, finished: Run) -> float:
+    """What levels refine."""
+    return finished.scene["fluid"]["spacing"] if case.refined == "spacing" else finished.record["time_step"]
+
+
+def _varied(vary: Vary, base: Measured, values: list[float]) -> float:
+    """Standard uncertainty from one source of error."""
+    if vary.ratio is None:
+        return float(np.std([base.value, *values], ddof=1))
+    return SAFETY * abs(values[0] - base.value) / (1 - vary.ratio**-vary.order) / COVERAGE
+
+
+def judge(case: Case, tier: str, runs: dict[tuple[str, ...], Run]) -> list[Outcome]:
+    """`runs` by their overrides, those of runner.jobs_of. Throws CaseError where an observable does not exist."""
+    outcomes = []
+    for observable in case.observables:
+        def of(overrides: tuple[str, ...], observable: Observable = observable) -> Measured:
+            return measure(case, observable, runs[overrides])
+
+        finished = [runs[level.overrides] for level in case.levels_of(tier)]
+        levels = [of(level.overrides) for level in case.levels_of(tier)]
+        heights = [_height(case, one) for one in finished]
+        sources, convergence = {"time": levels[-1].uncertainty} if levels[-1].uncertainty else {}, None
+        if len(levels) > 1:
+            convergence = converge(heights, [level.value for level in levels])
+            sources["resolution" if case.refined == "spacing" else "step"] = convergence.gci / COVERAGE
+        base = case.quick_finest().overrides
+        for vary in case.vary:
+            values = [of(base + chosen).value for chosen in vary.sets]
+            sources[vary.source] = _varied(vary, of(base), values)
+        outcomes.append(
+            Outcome(observable, levels[-1], sources, tuple(heights), tuple(levels), convergence, case.stalls)
+        )
+        if observable.extrapolated is not None and len(levels) > 2:
+            outcomes.append(_at_zero(outcomes[-1]))
+    return outcomes
+
+
+def _at_zero(finest: Outcome) -> Outcome:
+    """The value extrapolated over the levels as an outcome of its own, with its own goal."""
+    found = extrapolated(list(finest.spacings), [level.value for level in finest.levels])
+    objection = "; ".join(dict.fromkeys(filter(None, (level.objection for level in finest.levels[-found.used :]))))
+    observable = replace(finest.observable, symbol=f"{finest.observable.symbol}, dx to 0",
+                         goal=finest.observable.extrapolated, order=None, extrapolated=None)
+    sources = {name: value for name, value in finest.sources.items() if name != "resolution"}
+    return Outcome(observable, Measured(found.value, 0.0, objection), sources | {f"extrapolation ({found.how})": found.uncertainty})
+
+
+def beside(case: Case, runs: dict[tuple[str, ...], Run]) -> list[tuple[str, Outcome]]:
+    """What the manifest asks to measure beside its case, by its label: reported as it is."""
+    base = case.quick_finest().overrides
+    return [
+        (entry.label, Outcome(replace(observable, order=None), measure(case, observable, runs[base + entry.overrides])))
+        for entry in case.beside
+        for observable in case.observables
+        if not observable.skipped
+    ]

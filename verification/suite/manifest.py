@@ -1,0 +1,272 @@
+"""The manifest of a case: the table [case] of cases/NAME/case.toml. A case is that folder and nothing else.
+
+    [case]
+    purpose = "one paragraph"
+    equations = ["u = U sin(k y) exp(-nu k^2 t)"]   # what the flow obeys, a line each; may be left out
+    tier = "quick"                  # or "full"
+    cost = 20                       # core-seconds of the quick tier, about
+    refined = "spacing"             # or "step": what gets finer from level to level
+    stalls = "why the error stops falling"  # only where an observable has no band for its order; may be left out
+
+    [[case.point]]                  # one member of a family that shares all else; the case NAME.POINT. May be left out
+    name = "phi_0.1"
+    set = ["box.size=[5.6, 5.6]"]   # overrides, which come before those of the level
+    tier = "full"                   # that of the case if left out
+    cost = 20                       # likewise
+    stalls = "why the error stops falling"  # of this point, whose observables then have no band for their order
+
+    [case.live]                     # a reference code, run after the solver: python3 -m reference.CODE PROBLEM --scene ...
+    code = "openfoam"
+    problem = "drag"
+    quick = ["--levels", "16,32"]   # options in that tier
+    full = ["--levels", "16,32,64"]
+
+    [[case.observable]]
+    name = "drag"                   # a function of measure.py in the folder of the case, or of verification/measures/observables.py
+    symbol = "F/(mu U)"
+    reference = 51.53
+    uncertainty = 0.005             # standard uncertainty of the reference, absolute
+    # or, in place of reference, uncertainty and source:
+    live = "drag"                   # a quantity of the result of [case.live]
+    published = "square_array_stokes"  # a table of reference/published, looked up for the scene
+    input = 0.0                     # standard uncertainty from the inputs, absolute; 0 if left out
+    source = "Sangani and Acrivos 1982, table 1"
+    goal = 0.03                     # largest relative error that can count as correct; absolute where the reference is 0
+    order = [1.5, 2.5]              # band of the observed order; may be left out
+    extrapolated = 0.01             # goal of the value extrapolated over three levels or more, judged as well; may be left out
+
+    [[case.level]]                  # from coarse to fine; `set = []` is the scene as it stands
+    set = ["fluid.spacing=0.125", "fluid.rcut=0.375"]
+    tier = "full"                   # only in that tier; may be left out
+
+    [[case.vary]]                   # one source of numerical error, changed alone on the finest quick level
+    source = "step"                 # step, Mach, disorder, ...
+    sets = [["run.step_factor=0.5"]]
+    ratio = 2                       # by which the source is refined, and the order of its error: the error is estimated
+    order = 1                       # as the change / (1 - ratio^-order). Without ratio: several seeds, their scatter counts
+
+    [[case.beside]]                 # measured and reported, without a verdict
+    label = "classic"
+    set = ["fluid.method=classic"]
+
+    [case.equivalence]              # see verification/bits/equivalence.py
+
+measure.py beside it holds its observables, and may hold
+
+    curves(run) -> list[Chart]                # to draw of the finest run, see verification/measures/curve.py
+    live_curves(run, folder) -> list[Chart]   # to draw of it and of the reference code, whose files are in the folder
+    family_curves(results) -> list[Chart]     # to draw of two points or more together, see verification/suite/result.py
+    stored_curves(results) -> list[Chart]     # to draw of the stored points of the full tier, which are without their runs
+    live_options(runs) -> list[str]           # more options of the reference code, from the runs by their overrides
+"""
+
+import copy
+import math
+import os
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+from verification.bits.equivalence import read_equivalence
+from verification.protocol.errors import CaseError
+from verification.protocol.machine import ROOT
+from verification.protocol.scene import with_overrides
+from verification.suite.case import REFINED, TIERS, Beside, Case, Level, Live, Observable, Vary
+
+
+def cases_folder() -> Path:
+    """Where the cases are: MAPPM_CASES, or cases/ of this tree."""
+    return Path(os.environ.get("MAPPM_CASES", ROOT / "cases"))
+
+
+NUMBER = (int, float)
+
+
+def _entry(table: dict, key: str, kind: type | tuple[type, ...], where: str, default=None):
+    if key not in table:
+        if default is None:
+            raise CaseError(f"{where}.{key}: missing; add it")
+        return default
+    if not isinstance(table[key], kind) or isinstance(table[key], bool):
+        raise CaseError(f"{where}.{key} = {table[key]!r}: wrong type")
+    return table[key]
+
+
+def _choice(table: dict, key: str, known: tuple[str, ...], where: str, default: str | None = None) -> str:
+    value = _entry(table, key, str, where, default)
+    if value not in known:
+        raise CaseError(f"{where}.{key} = {value!r}: unknown; known are {', '.join(known)}")
+    return value
+
+
+def _only(table: dict, keys: tuple[str, ...], where: str) -> None:
+    for key in table:
+        if key not in keys:
+            raise CaseError(f"{where}.{key}: unknown; known are {', '.join(keys)}")
+
+
+def _texts(table: dict, key: str, where: str, default: list | None = None) -> tuple[str, ...]:
+    values = _entry(table, key, list, where, default)
+    if not all(isinstance(value, str) for value in values):
+        raise CaseError(f"{where}.{key} = {values!r}: write a list of texts")
+    return tuple(values)
+
+
+REFERENCES = ("reference", "live", "published")  # exactly one of them
+
+
+def _reference(table: dict, where: str) -> dict:
+    given = [key for key in REFERENCES if key in table]
+    if len(given) != 1:
+        raise CaseError(f"{where}: {' and '.join(given) or 'no reference'} given; give one of {', '.join(REFERENCES)}")
+    if given == ["reference"]:
+        return {key: _entry(table, key, kind, where) for key, kind in
+                {"reference": NUMBER, "uncertainty": NUMBER, "source": str}.items()}
+    for key in ("uncertainty", "source"):
+        if key in table:
+            raise CaseError(f"{where}.{key}: comes with {given[0]}; remove it")
+    return {given[0]: _entry(table, given[0], str, where), "reference": math.nan, "uncertainty": math.nan, "source": ""}
+
+
+def _observable(table: dict, where: str) -> Observable:
+    kinds = {"name": str, "symbol": str, "goal": NUMBER}
+    _only(table, (*kinds, *REFERENCES, "uncertainty", "source", "input", "order", "extrapolated"), where)
+    band = table.get("order")
+    if band is not None and not (isinstance(band, list) and len(band) == 2 and band[0] < band[1]):
+        raise CaseError(f"{where}.order = {band!r}: write the band as [lowest, highest]")
+    observable = Observable(
+        **{key: _entry(table, key, kind, where) for key, kind in kinds.items()},
+        **_reference(table, where),
+        input=_entry(table, "input", NUMBER, where, 0.0),
+        order=tuple(band) if band else None,
+        extrapolated=_entry(table, "extrapolated", NUMBER, where) if "extrapolated" in table else None,
+    )
+    if min(observable.goal, observable.input, observable.extrapolated or 0.0) < 0 or observable.uncertainty < 0:
+        raise CaseError(f"{where}: goal, extrapolated, uncertainty and input must not be negative")
+    return observable
+
+
+def _level(table: dict, where: str) -> Level:
+    _only(table, ("set", "tier"), where)
+    return Level(_texts(table, "set", where), _choice(table, "tier", TIERS, where, "quick"))
+
+
+def _vary(table: dict, where: str) -> Vary:
+    _only(table, ("source", "sets", "ratio", "order"), where)
+    sets = _entry(table, "sets", list, where)
+    if not sets or not all(isinstance(entry, list) for entry in sets):
+        raise CaseError(f"{where}.sets = {sets!r}: write a list of lists of overrides")
+    ratio = table.get("ratio")
+    if ratio is not None and (len(sets) != 1 or not isinstance(ratio, NUMBER) or ratio <= 1):
+        raise CaseError(f"{where}.ratio = {ratio!r}: needs one entry in sets, and must be above 1")
+    if ratio is None and len(sets) < 2:
+        raise CaseError(f"{where}.sets: one entry without a ratio says nothing; give the ratio, or several seeds")
+    order = _entry(table, "order", NUMBER, where, 1.0)
+    return Vary(_entry(table, "source", str, where), tuple(tuple(entry) for entry in sets), ratio, float(order))
+
+
+def _beside(table: dict, where: str) -> Beside:
+    _only(table, ("label", "set"), where)
+    return Beside(_entry(table, "label", str, where), _texts(table, "set", where))
+
+
+def _live(table: dict, where: str) -> Live:
+    _only(table, ("code", "problem", "quick", "full"), where)
+    codes = tuple(sorted(path.parent.name for path in (ROOT / "reference").glob("*/__main__.py")))
+    return Live(_choice(table, "code", codes, where), _entry(table, "problem", str, where), _texts(table, "quick", where),
+                _texts(table, "full", where))
+
+
+def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
+    """The case once for each point, or the case itself where there are none."""
+    found = []
+    for i, table in enumerate(tables):
+        at = f"{where}.point[{i}]"
+        _only(table, ("name", "set", "tier", "cost", "stalls"), at)
+        base = _texts(table, "set", at)
+        stalls = " ".join(_entry(table, "stalls", str, at, "").split())
+        try:
+            scene = with_overrides(copy.deepcopy(case.scene), base)
+        except (KeyError, IndexError, ValueError) as error:
+            raise CaseError(f"{at}.set = {list(base)}: no such key: {error}") from None
+        found.append(replace(
+            case, name=f"{case.name}.{_entry(table, 'name', str, at)}", base=base, scene=scene,
+            tier=_choice(table, "tier", TIERS, at, case.tier), cost=float(_entry(table, "cost", NUMBER, at, case.cost)),
+            levels=tuple(replace(level, overrides=base + level.overrides) for level in case.levels),
+            stalls=stalls or case.stalls,
+            observables=tuple(replace(one, order=None) for one in case.observables) if stalls else case.observables,
+        ))
+    if len({point.name for point in found}) < len(found):
+        raise CaseError(f"{where}.point: two points have the same name; rename one")
+    return found or [case]
+
+
+def _all_of(table: dict, key: str, read, where: str) -> tuple:
+    return tuple(read(entry, f"{where}.{key}[{i}]") for i, entry in enumerate(table.get(key, [])))
+
+
+def read_cases(file: Path) -> list[Case]:
+    """The points of a case, or the case itself where it has none. Throws CaseError."""
+    try:
+        scene = tomllib.loads(file.read_text())
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError(f"{file}: {error}; mend the TOML") from None
+    table = scene.get("case")
+    if table is None:
+        raise CaseError(f"{file}: case: missing; add a table [case]")
+    where = f"{file}: case"
+    lists = {"observable": _observable, "level": _level, "vary": _vary, "beside": _beside}
+    _only(table, ("purpose", "equations", "tier", "cost", "refined", "stalls", "equivalence", "live", "point", *lists), where)
+    found = {key: _all_of(table, key, read, where) for key, read in lists.items()}
+    for i, observable in enumerate(found["observable"]):
+        if observable.order and len(found["level"]) < 3:
+            raise CaseError(f"{where}.observable[{i}].order: an order needs three levels; add [[case.level]]")
+        if observable.extrapolated is not None and len(found["level"]) < 3:
+            raise CaseError(f"{where}.observable[{i}].extrapolated: needs three levels; add [[case.level]]")
+        if observable.live and "live" not in table:
+            raise CaseError(f"{where}.observable[{i}].live: no reference code is run; add [case.live]")
+    equivalence = table.get("equivalence")
+    case = Case(
+        name=file.parent.name,
+        file=file,
+        purpose=" ".join(_entry(table, "purpose", str, where).split()),
+        tier=_choice(table, "tier", TIERS, where),
+        cost=float(_entry(table, "cost", NUMBER, where)),
+        equations=_texts(table, "equations", where, []),
+        refined=_choice(table, "refined", REFINED, where, "spacing"),
+        stalls=" ".join(_entry(table, "stalls", str, where, "").split()),
+        observables=found["observable"],
+        levels=found["level"],
+        vary=found["vary"],
+        beside=found["beside"],
+        equivalence=None if equivalence is None else read_equivalence(equivalence, f"{where}.equivalence"),
+        live=_live(table["live"], f"{where}.live") if "live" in table else None,
+        scene=scene,
+    )
+    return _points(case, table.get("point", []), where)
+
+
+def all_cases() -> list[Case]:
+    return [case for file in sorted(cases_folder().glob("*/case.toml")) for case in read_cases(file)]
+
+
+def find_cases(name: str) -> list[Case]:
+    """By name, by CASE.POINT, or by the path of its scene: all points of a case that has some."""
+    family, _, point = ("", "", "") if name.endswith(".toml") else name.partition(".")
+    file = cases_folder() / family / "case.toml" if family else Path(name)
+    if not file.exists():
+        known = ", ".join(path.parent.name for path in sorted(cases_folder().glob("*/case.toml")))
+        raise CaseError(f"{name}: no such case; known are {known}")
+    found = read_cases(file)
+    chosen = [case for case in found if not point or case.name == name]
+    if not chosen:
+        raise CaseError(f"{name}: {family} has no such point; known are {', '.join(case.name for case in found)}")
+    return chosen
+
+
+def find_case(name: str) -> Case:
+    """As find_cases, where there is only one."""
+    found = find_cases(name)
+    if len(found) > 1:
+        raise CaseError(f"{name}: has several points; choose one of {', '.join(case.name for case in found)}")
+    return found[0]
