@@ -1,5 +1,6 @@
 """What the report draws; the decay itself is measured by verification/measures/observables.py."""
 
-from verification.measures.flows import decay_charts as curves
+from verification.measures.flows import decay_charts
+from verification.measures.measures import Measures
 
-__all__ = ["curves"]
+MEASURES = Measures(charts=decay_charts)

@@ -8,7 +8,9 @@ from reference.published.cavity import centre_line
 from verification.measures.curve import Chart, Curve
 from verification.measures.fits import extrapolate, values_at
 from verification.measures.histories import settling
-from verification.measures.observables import SETTLED, Measured
+from verification.measures.measures import Measures, by_name
+from verification.measures.observables import SETTLED
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run, read_time
 
 RADIUS = 3.0  # of the fit, in spacings
@@ -108,3 +110,6 @@ def curves(run: Run) -> list[Chart]:
         settling("Kinetic energy against time", "kinetic energy", run.series["time"], run.series["fluid_energy"])
     )
     return charts
+
+
+MEASURES = Measures(observables=by_name(rms_from_ghia, largest_from_ghia, lowest_u, highest_v, lowest_v), charts=curves)

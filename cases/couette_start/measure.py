@@ -6,7 +6,8 @@ from functools import partial
 import numpy as np
 
 from verification.measures.curve import Chart, Curve
-from verification.measures.observables import Measured
+from verification.measures.measures import Measures
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run, read_time
 
 TIMES = (0.05, 0.1, 0.3, 1.0)  # nu t / H^2
@@ -53,9 +54,6 @@ def _error(time: float, run: Run) -> Measured:
     return Measured(float(np.sqrt(np.mean(found.error**2))), 0.0, objection)
 
 
-error_at_005, error_at_01, error_at_03, error_at_1 = (partial(_error, time) for time in TIMES)
-
-
 def curves(run: Run) -> list[Chart]:
     y = np.linspace(0, 1, 201)
     profiles = [profile(run, time) for time in TIMES]
@@ -66,3 +64,9 @@ def curves(run: Run) -> list[Chart]:
         Chart("Velocity between the walls, at times nu t / H^2", "y / H", "u / U", exact + found),
         Chart("Difference from the series, at times nu t / H^2", "y / H", "(u - u_exact) / U", wrong),
     ]
+
+
+MEASURES = Measures(
+    observables={f"error_at_{time:g}".replace(".", ""): partial(_error, time) for time in TIMES},
+    charts=curves,
+)

@@ -2,14 +2,12 @@
 
 from verification.measures.curve import Chart
 from verification.measures.drag_families import drag_errors
-from verification.measures.histories import drag_history as curves
-from verification.suite.result import CaseResult
-
-__all__ = ["curves", "family_curves", "stored_curves"]
+from verification.measures.histories import drag_history
+from verification.measures.measures import Measures, Point
 
 
-def family_curves(results: list[CaseResult]) -> list[Chart]:
+def family_curves(results: list[Point]) -> list[Chart]:
     return [drag_errors(results)]
 
 
-stored_curves = family_curves
+MEASURES = Measures(charts=drag_history, charts_of_family=family_curves)

@@ -4,7 +4,8 @@ import numpy as np
 
 from reference.stokes.channel import Disc, angular_velocity, angular_velocity_without_transpose
 from verification.measures.curve import Chart, Curve
-from verification.measures.observables import Measured
+from verification.measures.measures import Measures, by_name
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
 from verification.protocol.series import Table, read_table
 
@@ -56,3 +57,6 @@ def curves(run: Run) -> list[Chart]:
         ),
         Chart("Height of the disc", "G t", "y / H", (Curve("measured", strain, table["position_y"] / width),)),
     ]
+
+
+MEASURES = Measures(observables=by_name(spin), charts=curves)

@@ -4,16 +4,17 @@ The slip w is the mean velocity of the fluid seen from the body, along the force
 body, (m_s m_f / (m_s + m_f)) dw/dt = F - f.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
 from reference.stokes.square_array import square_array
 from reference.stokes.unsteady_array import slip_after_release, virtual_mass
 from verification.measures.curve import Chart, Curve
-from verification.measures.observables import Measured
+from verification.measures.measures import Measures, Values, by_name
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
 from verification.protocol.series import read_table
 
@@ -149,12 +150,21 @@ def lag(run: Run) -> Measured:
     return Measured(float(np.max(alone - w) / alone[-1]), 0.0)
 
 
-def live_options(runs: dict[tuple[str, ...], Run]) -> list[str]:
+def reference_options(runs: Sequence[Values]) -> dict[str, str]:
     """The drag law for LIGGGHTS, of the run with the body held fixed."""
-    (held,) = [run for run in runs.values() if run.scene["body"][0].get("motion") == "fixed"]
-    release, law = release_of(held), measured_law(held)
-    mass = release_of(next(run for run in runs.values() if run is not held)).reduced_mass + law.virtual_mass
-    return ["--gamma", f"{law.drag:.12g}", "--force", f"{release.force:.12g}", "--mass", f"{mass:.12g}"]
+    (held,) = [one.values for one in runs if one.scene["body"][0].get("motion") == "fixed"]
+    free = next(one.values for one in runs if one.scene["body"][0].get("motion") != "fixed")
+    mass = free["reduced_mass"] + held["law_mass"]
+    return {"gamma": f"{held['law_drag']:.12g}", "force": f"{held['force']:.12g}", "mass": f"{mass:.12g}"}
+
+
+# Of every run: what the drag law for LIGGGHTS is made of.
+FIGURES = {
+    "force": lambda run: release_of(run).force,
+    "reduced_mass": lambda run: release_of(run).reduced_mass,
+    "law_drag": lambda run: measured_law(run).drag,
+    "law_mass": lambda run: measured_law(run).virtual_mass,
+}
 
 
 def laws(run: Run) -> tuple[Curve, ...]:
@@ -173,9 +183,18 @@ def curves(run: Run) -> list[Chart]:
     return [Chart("Slip after release", "time", "w", (*laws(run), exact, Curve("MaPPM", *slip(run))))]
 
 
-def live_curves(run: Run, folder: Path) -> list[Chart]:
-    table, (time, w) = read_table(folder / "table.csv"), slip(run)
+def charts_of_both(run: Run, other: Run) -> list[Chart]:
+    table, (time, w) = read_table(other.folder / "table.csv"), slip(run)
     theirs = Curve("LIGGGHTS, drag and dragged fluid as measured", table["time"], table["velocity"], reference=True)
     difference = (w - np.interp(time, table["time"], table["velocity"])) / table["velocity"][-1]
     return [Chart("Slip after release", "time", "w", (theirs, Curve("MaPPM", time, w))),
             Chart("Difference from LIGGGHTS", "time", "over w at the end", (Curve("MaPPM", time, difference),))]
+
+
+MEASURES = Measures(
+    observables=by_name(terminal_velocity, relaxation_time, from_drag_law, from_stokes_flow),
+    figures=FIGURES,
+    charts=curves,
+    charts_of_both=charts_of_both,
+    reference_options=reference_options,
+)

@@ -3,12 +3,13 @@
 import numpy as np
 
 from cases.falling_disc.measure import (
+    FIGURES,
     Law,
     Release,
     _times,
-    live_curves,
-    live_options,
+    charts_of_both,
     measured_law,
+    reference_options,
     relaxation_time,
     release_of,
     slip,
@@ -17,11 +18,9 @@ from cases.falling_disc.measure import (
 from reference.stokes.history import History
 from reference.stokes.laplace import invert
 from verification.measures.curve import Chart, Curve
-from verification.measures.observables import Measured
+from verification.measures.measures import Measures, by_name
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
-
-__all__ = ["curves", "from_drag_law", "from_history", "live_curves", "live_options", "relaxation_time",
-           "terminal_velocity"]  # fmt: skip
 
 
 def added_mass(release: Release) -> float:
@@ -59,3 +58,12 @@ def curves(run: Run) -> list[Chart]:
         Curve("and history", time, with_history(release, law, time), reference=True),
         Curve("MaPPM", *slip(run)),
     ))]
+
+
+MEASURES = Measures(
+    observables=by_name(terminal_velocity, relaxation_time, from_drag_law),
+    figures=FIGURES,
+    charts=curves,
+    charts_of_both=charts_of_both,
+    reference_options=reference_options,
+)

@@ -1,17 +1,8 @@
 """Impacts along the normal, against the equation of the overlap and against LIGGGHTS."""
 
 from verification.measures.curve import Chart
-from verification.measures.impacts import family_chart, force_charts, measure, over_exact
-from verification.suite.result import CaseResult
-
-force_ratio = over_exact("contact_force", lambda exact: exact.force)
-time_ratio = over_exact("contact_time", lambda exact: exact.time)
-restitution_ratio = over_exact("restitution", lambda exact: exact.restitution)
-contact_force = measure("contact_force")
-contact_time = measure("contact_time")
-restitution = measure("restitution")
-
-live_curves = force_charts
+from verification.measures.impacts import FIGURES, family_chart, force_charts, measured, over_exact
+from verification.measures.measures import Measures, Point
 
 
 def series_of(point: str) -> str:
@@ -20,6 +11,18 @@ def series_of(point: str) -> str:
     return {"3": words[1], "linear": "linear"}.get(words[0], "")
 
 
-def family_curves(results: list[CaseResult]) -> list[Chart]:
+def family_curves(results: list[Point]) -> list[Chart]:
     return [family_chart(results, ("Restitution", "given", "measured"), lambda scene: scene.law.restitution,
                          lambda values, scene: values["restitution"], series_of)]
+
+
+MEASURES = Measures(
+    observables=measured("contact_force", "contact_time", "restitution") | {
+        "force_ratio": over_exact("contact_force", lambda exact: exact.force),
+        "time_ratio": over_exact("contact_time", lambda exact: exact.time),
+        "restitution_ratio": over_exact("restitution", lambda exact: exact.restitution),
+    },
+    figures=FIGURES,
+    charts_of_both=force_charts,
+    charts_of_family=family_curves,
+)

@@ -5,16 +5,11 @@ from pathlib import Path
 
 from reference.contact.scene import ContactScene
 from verification.measures.curve import Chart
-from verification.measures.impacts import Values, family_chart, force_charts, measure, read_published
-from verification.suite.result import CaseResult
+from verification.measures.impacts import FIGURES, Numbers, family_chart, force_charts, measured, read_published
+from verification.measures.measures import Measures, Point
 
 PUBLISHED = Path(__file__).parent / "published.csv"
 
-tangential_velocity = measure("tangential_velocity")
-spin = measure("spin")
-normal_velocity = measure("normal_velocity")
-
-live_curves = force_charts
 
 
 def slide(scene: ContactScene) -> float:
@@ -23,12 +18,12 @@ def slide(scene: ContactScene) -> float:
     return abs(one.velocity[0] - one.radius * one.spin[1]) / -one.velocity[2]
 
 
-def recoil(values: Values, scene: ContactScene) -> float:
+def recoil(values: Numbers, scene: ContactScene) -> float:
     """Tangent of the rebound angle of the surface, over the friction."""
     return math.tan(math.radians(values["rebound_angle"])) / scene.law.friction
 
 
-def surface_restitution(values: Values, scene: ContactScene) -> float:
+def surface_restitution(values: Numbers, scene: ContactScene) -> float:
     """Velocity of the surface after the impact over that before, the sign changed."""
     after = values["tangential_velocity"] - scene.bodies[0].radius * values["spin"]
     return -after / (slide(scene) * -scene.bodies[0].velocity[2])
@@ -39,7 +34,7 @@ def of_test(number: str):
     return lambda point: point.split("_")[1] if point.startswith(f"{number}_") else ""
 
 
-def family_curves(results: list[CaseResult]) -> list[Chart]:
+def family_curves(results: list[Point]) -> list[Chart]:
     return [
         family_chart(results, ("Test 4: rebound of the surface", "angle of incidence (degrees)", "rebound angle (degrees)"),
                      lambda scene: math.degrees(math.atan(slide(scene))), lambda values, scene: values["rebound_angle"], of_test("4"),
@@ -54,3 +49,11 @@ def family_curves(results: list[CaseResult]) -> list[Chart]:
                      lambda scene: math.degrees(math.atan(slide(scene))), lambda values, scene: values["rebound_angle"],
                      lambda point: "linear" if point.startswith("linear") else ""),
     ]
+
+
+MEASURES = Measures(
+    observables=measured("tangential_velocity", "spin", "normal_velocity"),
+    figures=FIGURES,
+    charts_of_both=force_charts,
+    charts_of_family=family_curves,
+)

@@ -4,16 +4,11 @@ from pathlib import Path
 
 from reference.contact.scene import ContactScene
 from verification.measures.curve import Chart
-from verification.measures.impacts import family_chart, force_charts, measure, read_published
-from verification.suite.result import CaseResult
+from verification.measures.impacts import FIGURES, family_chart, force_charts, measured, read_published
+from verification.measures.measures import Measures, Point
 
 PUBLISHED = Path(__file__).parent / "published.csv"
 
-tangential_velocity = measure("tangential_velocity")
-spin = measure("spin")
-normal_velocity = measure("normal_velocity")
-
-live_curves = force_charts
 
 
 def slide(scene: ContactScene) -> float:
@@ -33,7 +28,7 @@ def surface_restitution(values: dict[str, float], scene: ContactScene) -> float:
     return -(values["tangential_velocity"] - one.radius * values["spin"]) / (one.radius * abs(one.spin[1]))
 
 
-def family_curves(results: list[CaseResult]) -> list[Chart]:
+def family_curves(results: list[Point]) -> list[Chart]:
     return [
         family_chart(results, ("Test 7: spin after the impact", "spin before (rad/s)", "spin after (rad/s)"),
                      lambda scene: scene.bodies[0].spin[1], lambda values, scene: values["spin"],
@@ -43,3 +38,11 @@ def family_curves(results: list[CaseResult]) -> list[Chart]:
                      (read_published(PUBLISHED, "8a", "8a, read off Chung and Ooi"),
                       read_published(PUBLISHED, "8b", "8b, read off Chung and Ooi"))),
     ]
+
+
+MEASURES = Measures(
+    observables=measured("tangential_velocity", "spin", "normal_velocity"),
+    figures=FIGURES,
+    charts_of_both=force_charts,
+    charts_of_family=family_curves,
+)

@@ -4,7 +4,8 @@ import numpy as np
 
 from verification.measures.curve import Chart, Curve
 from verification.measures.flows import Field, fields, initial_flow
-from verification.measures.observables import Measured
+from verification.measures.measures import Measures, by_name
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
 
 
@@ -31,3 +32,6 @@ def curves(run: Run) -> list[Chart]:
     time, error = _errors(run)
     measured = Curve("measured", time, error)
     return [Chart("Error of the velocity field", "time", "rms(u - u_exact) / rms(u_exact)", (measured,))]
+
+
+MEASURES = Measures(observables=by_name(field_error), charts=curves)

@@ -7,7 +7,9 @@ import numpy as np
 from verification.measures.curve import Chart, Curve
 from verification.measures.fits import extrapolate
 from verification.measures.histories import settling
-from verification.measures.observables import SETTLED, Measured
+from verification.measures.measures import Measures, by_name
+from verification.measures.observables import SETTLED
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
 
 
@@ -68,3 +70,6 @@ def curves(run: Run) -> list[Chart]:
               (Curve("PPs", found.y, found.error, points=True),)),
         settling("Mean velocity against time", "mean velocity", run.series["time"], run.series[mean]),
     ]
+
+
+MEASURES = Measures(observables=by_name(poiseuille), charts=curves)

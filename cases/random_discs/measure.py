@@ -1,5 +1,6 @@
 """What the report draws; the drag itself is measured by verification/measures/observables.py."""
 
-from verification.measures.histories import drag_history as curves
+from verification.measures.histories import drag_history
+from verification.measures.measures import Measures
 
-__all__ = ["curves"]
+MEASURES = Measures(charts=drag_history)

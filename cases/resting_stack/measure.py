@@ -1,19 +1,16 @@
 """A stack at rest, against the balance of forces and against LIGGGHTS."""
 
-from pathlib import Path
 
 import numpy as np
 
 from reference.contact.motion import Motion
-from verification.measures.curve import Chart
-from verification.measures.impacts import accepted, centre_chart, measure, motion_of
-from verification.measures.observables import Measured
+from verification.measures.impacts import accepted, centre_charts, measured, motion_of
+from verification.measures.measures import Measures, by_name
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
 
 PART = 5  # the last of so many parts of the run is the rest that is judged
 
-height = measure("height")
-lowest_overlap = measure("lowest_overlap")
 
 
 def exact_overlaps(motion: Motion) -> np.ndarray:
@@ -56,5 +53,7 @@ def energy_growth(run: Run) -> Measured:
     return accepted(float(max(0.0, np.max(energy[-part:]) - np.max(energy[-2 * part : -part])) / unit))
 
 
-def live_curves(run: Run, folder: Path) -> list[Chart]:
-    return [centre_chart(run, folder)]
+MEASURES = Measures(
+    observables=by_name(overlap_error, drift, energy_growth) | measured("height", "lowest_overlap"),
+    charts_of_both=centre_charts,
+)

@@ -5,7 +5,8 @@ import numpy as np
 from verification.measures.curve import Chart, Curve
 from verification.measures.fits import Oscillation, damped_oscillation
 from verification.measures.flows import amplitudes, initial_flow, viscosity_of
-from verification.measures.observables import Measured
+from verification.measures.measures import Measures, by_name
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
 
 
@@ -46,3 +47,6 @@ def curves(run: Run) -> list[Chart]:
     exact = np.exp(-damping * fine) * (np.cos(frequency * fine) - damping / frequency * np.sin(frequency * fine))
     measured = Curve("measured", time, amplitude, points=True)
     return [Chart("Amplitude of the wave", "time", "u / U", (Curve("exact", fine, exact, reference=True), measured))]
+
+
+MEASURES = Measures(observables=by_name(sound_speed, sound_damping), charts=curves)

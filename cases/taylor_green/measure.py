@@ -4,7 +4,8 @@ import numpy as np
 
 from verification.measures.curve import Chart, Curve
 from verification.measures.flows import amplitudes, decay_chart, fields, initial_flow, viscosity_of
-from verification.measures.observables import Measured
+from verification.measures.measures import Measures, by_name
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
 
 
@@ -46,3 +47,6 @@ def curves(run: Run) -> list[Chart]:
     projected = Curve("on the exact field", at, amplitude**2, points=True)
     energy = Chart("Kinetic energy", "time", "E / E(0)", (exact, found, projected), log=True)
     return [energy, decay_chart(run)]
+
+
+MEASURES = Measures(observables=by_name(field_error), charts=curves)

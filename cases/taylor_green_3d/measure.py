@@ -6,7 +6,8 @@ import numpy as np
 
 from verification.measures.curve import Chart, Curve
 from verification.measures.flows import initial_flow
-from verification.measures.observables import Measured
+from verification.measures.measures import Measures, by_name
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
 
 
@@ -38,3 +39,6 @@ def curves(run: Run) -> list[Chart]:
         Chart("Kinetic energy", "k U t", "E / E(0)", (
             Curve("spectral", at, exact, reference=True), Curve("measured", time, found)), log=True)
     ]
+
+
+MEASURES = Measures(observables=by_name(energy), charts=curves)

@@ -4,7 +4,8 @@ import numpy as np
 
 from reference.published import look_up
 from verification.measures.curve import Chart, Curve
-from verification.measures.observables import Measured
+from verification.measures.measures import Measures, by_name
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
 from verification.protocol.series import read_table
 
@@ -35,3 +36,6 @@ def curves(run: Run) -> list[Chart]:
     over_gap = Curve("MaPPM", gap / DIAMETER, velocity)
     return [Chart("Fall of the sphere", "time (s)", "velocity (m/s)", (level, Curve("MaPPM", time, velocity))),
             Chart("Over the gap below the sphere", "gap / diameter", "velocity (m/s)", (over_gap,))]
+
+
+MEASURES = Measures(observables=by_name(u_max), charts=curves)

@@ -3,7 +3,8 @@
 import numpy as np
 
 from verification.measures.curve import Chart, Curve
-from verification.measures.observables import Measured
+from verification.measures.measures import Measures, by_name
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
 from verification.protocol.scene import in_si
 from verification.protocol.series import read_table
@@ -84,3 +85,6 @@ def curves(run: Run) -> list[Chart]:
             ),
         )
     ]
+
+
+MEASURES = Measures(observables=by_name(contact_force, contact_time), charts=curves)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from verification.measures.drag_families import by_reynolds, drag_errors, drag_of_one_sphere
-from verification.measures.observables import Measured
+from verification.protocol.quantity import Measured
 from verification.suite.case import Observable
 from verification.suite.judge import Outcome
 

@@ -12,9 +12,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from verification.measures.observables import Measured
 from verification.protocol.errors import CaseError
-from verification.protocol.quantity import Quantity, Result, read_result, write_result
+from verification.protocol.quantity import Measured, Quantity, Result, read_result, write_result
 from verification.protocol.scene import in_si, with_overrides
 from verification.report.figures import stored_figures
 from verification.report.stored import store, stored_families
@@ -231,7 +230,7 @@ tier = "full"
 
 def test_a_tier_of_two_levels_is_not_extrapolated(tmp_path: Path) -> None:
     (tmp_path / "case.toml").write_text(LEVELS)
-    (tmp_path / "measure.py").write_text("""from verification.measures.observables import Measured
+    (tmp_path / "measure.py").write_text("""from verification.protocol.quantity import Measured
 
 def found(run):
     return Measured(50.0 + run.scene["fluid"]["spacing"], 0.0)

@@ -51,7 +51,7 @@ MEASURE = '''
 """Mean velocity at the end over that at the start."""
 
 from verification.measures.curve import Chart, Curve
-from verification.measures.observables import Measured
+from verification.protocol.quantity import Measured
 
 
 def mean_velocity(run):

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.measures.observables import Measured
 from verification.protocol.errors import CaseError
+from verification.protocol.quantity import Measured
 from verification.protocol.series import Table
 from verification.report.history import changes
 from verification.suite.case import Observable, Vary

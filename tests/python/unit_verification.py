@@ -9,8 +9,8 @@ import pytest
 from verification.bits.compare import PairDifference, trace_differences
 from verification.bits.equivalence import Row, read_equivalence
 from verification.measures.fits import decay_rate, extrapolate, relaxed
-from verification.measures.observables import Measured
 from verification.protocol.errors import CaseError
+from verification.protocol.quantity import Measured
 from verification.protocol.series import first_difference, read_table
 from verification.suite.case import Observable
 from verification.suite.judge import CORRECT, OPEN, WRONG, Outcome, measures

@@ -11,8 +11,9 @@ from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
 
+from verification.protocol.ledger import axes_of, defect_line, totals
 from verification.protocol.run import Run
-from verification.protocol.series import Table, read_table
+from verification.protocol.series import read_table
 
 ALL = -1  # partner of the rows of all(r)
 
@@ -48,17 +49,6 @@ class Conservation:
         return [*(defect_line(name, by_step) for name, by_step in kinds.items()), about]
 
 
-def defect_line(name: str, by_step: dict[int, int]) -> str:
-    wrong = [step for step, value in by_step.items() if value]
-    if not wrong:
-        return f"{name}: 0 at all {len(by_step)} samples"
-    return f"{name}: {by_step[wrong[0]]} at step {wrong[0]}, wrong at {len(wrong)} of {len(by_step)} samples"
-
-
-def _axes(table: Table, name: str) -> list[str]:
-    return [name + "_" + axis for axis in "xyz" if name + "_" + axis in table]
-
-
 def _largest(vectors: list[Vector]) -> int:
     return max((abs(component) for vector in vectors for component in vector), default=0)
 
@@ -70,7 +60,7 @@ def _sum(*vectors: Vector) -> Vector:
 def read_faces(path: Path) -> dict[int, dict[tuple[int, int], Vector]]:
     """Impulse by (rank, partner), by step."""
     table = read_table(path)
-    impulses = zip(*(map(int, table[name]) for name in _axes(table, "impulse")), strict=True)
+    impulses = zip(*(map(int, table[name]) for name in axes_of(table, "impulse")), strict=True)
     faces: dict[int, dict[tuple[int, int], Vector]] = defaultdict(dict)
     for step, rank, partner, impulse in zip(table["step"], table["rank"], table["partner"], impulses, strict=True):
         key = int(rank), int(partner)
@@ -94,16 +84,6 @@ def _inside(faces: dict[tuple[int, int], Vector]) -> int:
         given = [impulse for (r, partner), impulse in faces.items() if r == rank and partner != ALL]
         defects.append(_sum(tuple(-component for component in total), *given))
     return _largest(defects)
-
-
-def totals(run: Run) -> tuple[dict[int, int], dict[int, int]]:
-    """(largest |total momentum - start - impulse from outside|, |change of the number of PPs|), by sampled step."""
-    series = run.series
-    steps = [int(step) for step in series["step"]]
-    columns = [[int(total) for total in series[name]] for name in _axes(series, "momentum_defect")]
-    count = series["fluid_particles"]
-    momentum = {step: _largest([row]) for step, row in zip(steps, zip(*columns, strict=True), strict=True)}
-    return momentum, {step: abs(int(n) - int(count[0])) for step, n in zip(steps, count, strict=True)}
 
 
 def conservation(run: Run) -> Conservation:

@@ -7,8 +7,8 @@ import numpy as np
 
 from verification.measures.curve import Chart, Curve
 from verification.measures.extrapolation import correlations, isolated
-from verification.suite.judge import COVERAGE, Outcome
-from verification.suite.result import CaseResult
+from verification.measures.measures import Point
+from verification.protocol.quantity import COVERAGE
 
 
 def fraction_of(scene: dict) -> float:
@@ -22,44 +22,36 @@ def reynolds_of(scene: dict) -> float:
     return 2 * scene["body"][0]["radius"] * fluid["reference_velocity"] * fluid["density"] / fluid["viscosity"]
 
 
-Point = tuple[float, Outcome]
-
-
-def by_reynolds(results: Iterable[CaseResult]) -> dict[float, list[Point]]:
-    """(solids fraction, first outcome) of each result, by Reynolds number, all in ascending order."""
+def by_reynolds(points: Iterable[Point]) -> dict[float, list[Point]]:
+    """By Reynolds number, in each by solids fraction, all in ascending order."""
     found: dict[float, list[Point]] = {}
-    for result in results:
-        number = float(f"{reynolds_of(result.case.scene):.3g}")
-        found.setdefault(number, []).append((fraction_of(result.case.scene), result.outcomes[0]))
-    return {number: sorted(found[number], key=lambda point: point[0]) for number in sorted(found)}
+    for point in points:
+        found.setdefault(float(f"{reynolds_of(point.scene):.3g}"), []).append(point)
+    return {number: sorted(found[number], key=lambda point: fraction_of(point.scene)) for number in sorted(found)}
 
 
-def _bars(points: list[Point]) -> np.ndarray:
-    return np.array([COVERAGE * outcome.u_num * outcome.scale for _, outcome in points])
-
-
-def drag_errors(results: list[CaseResult]) -> Chart:
+def drag_errors(points: list[Point]) -> Chart:
     """Of the finest level against the first reference of the case, per cent."""
     curves = []
-    for number, points in by_reynolds(results).items():
-        errors = np.array([100 * outcome.error for _, outcome in points])
-        bars = 100 * _bars(points) / np.array([outcome.scale for _, outcome in points])
-        fractions = np.array([fraction for fraction, _ in points])
+    for number, some in by_reynolds(points).items():
+        errors = np.array([100 * point.error for point in some])
+        bars = np.array([100 * point.half_width / point.scale for point in some])
+        fractions = np.array([fraction_of(point.scene) for point in some])
         curves.append(Curve(f"Re {number:g}", fractions, errors, points=True, error=bars))
-    return Chart(f"{results[0].case.family}: error of the drag at the finest level", "solids fraction", "E, %", tuple(curves))
+    return Chart(f"{points[0].family}: error of the drag at the finest level", "solids fraction", "E, %", tuple(curves))
 
 
-def drag_of_one_sphere(results: list[CaseResult]) -> list[Chart]:
+def drag_of_one_sphere(points: list[Point]) -> list[Chart]:
     """At each Reynolds number measured at three solids fractions or more, the drag extrapolated to a sphere alone, beside the
     correlations. No verdict: with inertia the cells must be wider than the wake for the extrapolation to mean much."""
     charts = []
-    for number, points in by_reynolds(results).items():
-        points = [point for point in points if np.isfinite(point[1].measured.value)]
-        if len(points) < 3:
+    for number, some in by_reynolds(points).items():
+        some = [point for point in some if np.isfinite(point.value)]
+        if len(some) < 3:
             continue
-        fraction = np.array([share for share, _ in points])
-        drag = np.array([outcome.measured.value for _, outcome in points])
-        bars = _bars(points)
+        fraction = np.array([fraction_of(point.scene) for point in some])
+        drag = np.array([point.value for point in some])
+        bars = np.array([point.half_width for point in some])
         alone = isolated(list(fraction), list(drag), list(np.maximum(bars / COVERAGE, 1e-6 * drag)))
         shares = np.linspace(0.0, fraction.max() ** (1 / 3), 100)
         curves = [Curve(name, np.zeros(1), np.array([value]), reference=True, points=True)

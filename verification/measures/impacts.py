@@ -1,7 +1,7 @@
 """Measures of impacts for measure.py of a case, by the formulas that reference codes are measured by (reference/contact)."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 
@@ -11,9 +11,9 @@ from reference.contact.collision import Collision, collision_of
 from reference.contact.motion import IMPACT, REST, Motion, centre, normal_force, read_motion, touch_times
 from reference.contact.scene import ContactScene, contact_scene
 from verification.measures.curve import Chart, Curve
-from verification.measures.observables import Measured
+from verification.measures.measures import Measure, Point
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
-from verification.suite.result import CaseResult
 
 LIVE_TABLE = "table.csv"
 
@@ -32,20 +32,31 @@ def accepted(value: float) -> Measured:
     return Measured(value, 0.0, "there was no impact" if math.isnan(value) else "")
 
 
-def measure(name: str) -> Callable[[Run], Measured]:
+def measure(name: str) -> Measure:
     return lambda run: accepted((IMPACT | REST)[name](motion_of(run.folder)))
 
 
-def over_exact(name: str, of: Callable[[Collision], float]) -> Callable[[Run], Measured]:
+def measured(*names: str) -> dict[str, Measure]:
+    return {name: measure(name) for name in names}
+
+
+def _figure(name: str) -> Callable[[Run], float]:
+    return lambda run: IMPACT[name](motion_of(run.folder))
+
+
+FIGURES = {name: _figure(name) for name in IMPACT}  # for charts of families, judged or not
+
+
+def over_exact(name: str, of: Callable[[Collision], float]) -> Measure:
     """The measure `name` over what the equation of the overlap gives."""
     return lambda run: accepted(IMPACT[name](motion_of(run.folder)) / of(exact_of(run)))
 
 
-def force_charts(run: Run, folder: Path) -> list[Chart]:
+def force_charts(run: Run, other: Run) -> list[Chart]:
     """Of one impact: the force along the normal, both codes from the first touch on."""
-    live = read_motion(folder / LIVE_TABLE, contact_scene(run.scene))
+    theirs = read_motion(other.folder / LIVE_TABLE, contact_scene(run.scene))
     curves = []
-    for label, motion in (("LIGGGHTS", live), ("measured", motion_of(run.folder))):
+    for label, motion in (("LIGGGHTS", theirs), ("measured", motion_of(run.folder))):
         first, last = touch_times(motion)
         time = motion.time[:-1] - first
         near = (time > -0.1 * (last - first)) & (time < 1.1 * (last - first))
@@ -53,40 +64,32 @@ def force_charts(run: Run, folder: Path) -> list[Chart]:
     return [Chart("Force of the contact", "time (s)", "force (N)", tuple(curves))]
 
 
-def centre_chart(run: Run, folder: Path) -> Chart:
+def centre_charts(run: Run, other: Run) -> list[Chart]:
     """Height of the common centre of mass over time, both codes."""
-    live = read_motion(folder / LIVE_TABLE, contact_scene(run.scene))
+    theirs = read_motion(other.folder / LIVE_TABLE, contact_scene(run.scene))
     curves = [Curve(label, motion.time, centre(motion), reference=label == "LIGGGHTS")
-              for label, motion in (("LIGGGHTS", live), ("measured", motion_of(run.folder)))]
-    return Chart("Centre of mass", "time", "height", tuple(curves))
+              for label, motion in (("LIGGGHTS", theirs), ("measured", motion_of(run.folder)))]
+    return [Chart("Centre of mass", "time", "height", tuple(curves))]
 
 
-Values = dict[str, float]  # measures of one point by their names
+Numbers = Mapping[str, float]  # measures of one point by their names
 
 
-def _values(result: CaseResult) -> tuple[Values, Values]:
-    """By the solver, and by the reference code."""
-    motion = motion_of(result.finest.folder)
-    live = result.live.result.quantities if result.live else {}
-    return {name: of(motion) for name, of in IMPACT.items()}, {name: found.value for name, found in live.items()}
-
-
-def family_chart(results: list[CaseResult], labels: tuple[str, str, str], x: Callable[[ContactScene], float],
-                 y: Callable[[Values, ContactScene], float], group: Callable[[str], str], published: tuple[Curve, ...] = ()) -> Chart:
+def family_chart(points: list[Point], labels: tuple[str, str, str], x: Callable[[ContactScene], float],
+                 y: Callable[[Numbers, ContactScene], float], group: Callable[[str], str], published: tuple[Curve, ...] = ()) -> Chart:
     """y over x of all points, a colour for each `group` of their names, "" for none: the solver's as crosses, LIGGGHTS' as circles.
 
     `labels` are the title and those of the axes.
     """
     groups: dict[str, list[tuple[float, float, float]]] = {}
-    for result in results:
-        label = group(result.case.name.partition(".")[2])
-        scene = contact_scene(result.finest.scene)
-        own, live = _values(result)
+    for point in points:
+        label, scene = group(point.name), contact_scene(point.scene)
         if label:
-            groups.setdefault(label, []).append((x(scene), y(own, scene), y(live, scene) if live else math.nan))
+            theirs = y(point.reference, scene) if point.reference else math.nan
+            groups.setdefault(label, []).append((x(scene), y(point.values, scene), theirs))
     curves = []
-    for label, points in groups.items():
-        at, values, live = np.array(sorted(points)).T
+    for label, found in groups.items():
+        at, values, live = np.array(sorted(found)).T
         curves.append(Curve(label, at, values, points=True, marker="x"))
         if np.isfinite(live).any():
             curves.append(Curve(f"{label}, LIGGGHTS", at, live, reference=True, points=True))

@@ -4,27 +4,19 @@ The formulas are those of the exact solutions and of the published drag tables; 
 fields it wrote and the scene it was given.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from verification.measures.fits import decay_rate, extrapolate, relaxed
 from verification.measures.flows import amplitudes, initial_flow, viscosity_of
+from verification.measures.measures import by_name
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
 
 # A drag counts when the force of the fluid on the solid balances the body force, and the velocity has settled, to this.
 SETTLED = 0.005
 SLOWEST = 3.0  # relaxation times: both ways of relaxing at once are slower than either
-
-
-@dataclass(frozen=True)
-class Measured:
-    """value +- uncertainty, and why it cannot be accepted, if so."""
-
-    value: float
-    uncertainty: float
-    objection: str = ""
 
 
 def viscosity(run: Run) -> Measured:
@@ -140,7 +132,4 @@ def largest_velocity(run: Run) -> Measured:
     return Measured(float(speed.max()) / run.scene["fluid"]["sound_speed"], 0.0)
 
 
-OBSERVABLES: dict[str, Callable[[Run], Measured]] = {
-    function.__name__: function
-    for function in (viscosity, drag, sideways, largest_velocity)
-}
+OBSERVABLES = by_name(viscosity, drag, sideways, largest_velocity)

@@ -70,6 +70,7 @@ class Adapter(ABC):
 
     name: str
     capabilities: frozenset[str]
+    title: str = ""  # as its authors write it; by default the name
 
     @abstractmethod
     def version(self) -> str:
@@ -92,7 +93,7 @@ def describe(adapter: Adapter) -> dict:
     if unknown:
         raise ValueError(f"{adapter.name}: capabilities {', '.join(sorted(unknown))}: unknown; known are {', '.join(CAPABILITIES)}")
     missing = adapter.missing()
-    found = {"name": adapter.name, "version": "" if missing else adapter.version(),
+    found = {"name": adapter.name, "title": adapter.title or adapter.name, "version": "" if missing else adapter.version(),
              "capabilities": [word for word in CAPABILITIES if word in adapter.capabilities], "missing": missing}
     number = None if missing else adapter.numerics_version()
     return found if number is None else found | {"numerics_version": number}

@@ -7,3 +7,7 @@ class CaseError(ValueError):
 
 class SolverError(RuntimeError):
     """A run that did not end well; carries the solver's own message."""
+
+
+class StoreError(RuntimeError):
+    """A store that cannot be read or written: names the file, what is wrong and the fix. Nothing that it held is lost."""

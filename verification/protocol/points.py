@@ -6,17 +6,19 @@ import h5py
 import numpy as np
 
 
-def write_points(out: Path, number: int, time: float, points: np.ndarray, velocity: np.ndarray, kind: np.ndarray | None = None) -> Path:
+def write_points(out: Path, number: int, time: float, points: np.ndarray, velocity: np.ndarray, kind: np.ndarray | None = None,
+                 type_of_numbers: type = float) -> Path:
     """Writes out/snapshots/fluid_NUMBER.vtkhdf.
 
     points (n, D), velocity (n, D), D = 2 or 3, in the units of the scene; kind (n), 0 for the fluid, by default all of it.
+    `type_of_numbers` is that of points and velocities in the file.
     """
     file = out / "snapshots" / f"fluid_{number:09d}.vtkhdf"
     file.parent.mkdir(parents=True, exist_ok=True)
     count = len(points)
 
     def in_space(values: np.ndarray) -> np.ndarray:
-        return np.column_stack([values, np.zeros((count, 3 - values.shape[1]))]).astype(float)
+        return np.column_stack([values, np.zeros((count, 3 - values.shape[1]))]).astype(type_of_numbers)
 
     with h5py.File(file, "w") as whole:
         root = whole.create_group("VTKHDF")

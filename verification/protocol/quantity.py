@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 RESULT = "result.json"
+COVERAGE = 2.0  # k: half widths of intervals are k standard uncertainties
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,15 @@ class Quantity:
     order: float | None = None  # observed
     note: str = ""  # how value and uncertainty were made, one sentence
     unit: str = ""  # of the scene, or none
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a measure found of a run: value +- uncertainty, a standard one, and why it cannot be accepted, if so."""
+
+    value: float
+    uncertainty: float
+    objection: str = ""
 
 
 @dataclass(frozen=True)

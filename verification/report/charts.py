@@ -10,8 +10,9 @@ import numpy as np
 
 from verification.measures.budget import body_work
 from verification.measures.curve import Chart
+from verification.protocol.quantity import COVERAGE
 from verification.protocol.run import Run
-from verification.suite.judge import CORRECT, COVERAGE, SKIPPED, Outcome
+from verification.suite.judge import CORRECT, SKIPPED, Outcome
 from verification.suite.result import CaseResult
 
 matplotlib.use("Agg")

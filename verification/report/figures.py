@@ -5,8 +5,8 @@ from pathlib import Path
 
 from verification.measures.curve import Chart
 from verification.protocol.run import Run
-from verification.report.pictures import velocity_field
 from verification.report import charts
+from verification.report.pictures import velocity_field
 from verification.report.side_by_side import compare_fields
 from verification.report.stored import stored_families
 from verification.suite.judge import SKIPPED, Outcome, own

@@ -8,7 +8,8 @@ import jinja2
 from PIL import Image
 
 from verification.protocol.machine import ROOT
-from verification.suite.judge import CORRECT, COVERAGE, NOT_CONVERGING, SKIPPED
+from verification.protocol.quantity import COVERAGE
+from verification.suite.judge import CORRECT, NOT_CONVERGING, SKIPPED
 
 TEMPLATES = ROOT / "reports" / "templates"
 

@@ -12,10 +12,10 @@ from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 
-from verification.measures.observables import Measured
 from verification.protocol.machine import ROOT
+from verification.protocol.quantity import COVERAGE, Measured
 from verification.suite.case import Observable
-from verification.suite.judge import COVERAGE, SKIPPED, Outcome
+from verification.suite.judge import SKIPPED, Outcome
 from verification.suite.manifest import all_cases
 from verification.suite.result import CaseResult, Exactness
 

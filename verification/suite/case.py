@@ -49,15 +49,15 @@ class Vary:
 
 @dataclass(frozen=True)
 class Live:
-    """A reference code that is run for the case: python3 -m reference.CODE PROBLEM, with the options of the tier."""
+    """A reference code that is run for the case, with the options KEY=VALUE of the tier."""
 
     code: str
     problem: str
     quick: tuple[str, ...]
     full: tuple[str, ...]
 
-    def options(self, tier: str) -> tuple[str, ...]:
-        return self.quick if tier == "quick" else self.full
+    def options(self, tier: str) -> dict[str, str]:
+        return dict(text.split("=", 1) for text in (self.quick if tier == "quick" else self.full))
 
 
 @dataclass(frozen=True)

@@ -6,25 +6,21 @@ uncertainties; 95 % bounds are halved. Where the reference is 0 the observable i
 is the goal. Where a manifest offers no source of u_num, the goal alone decides, and the line says so.
 """
 
-import functools
-import importlib.util
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 
-from verification.measures.observables import OBSERVABLES, Measured
-from verification.protocol.errors import CaseError
-from verification.protocol.run import Run
+from verification.protocol.quantity import COVERAGE, Measured
 from verification.suite.case import Case, Observable, Vary
+from verification.suite.runner import Entry
 from verification.suite.ladder import SAFETY, Convergence, converge, error_order, extrapolated
 
 CORRECT, WRONG, OPEN, SKIPPED = "CORRECT", "WRONG", "NOT ACCEPTED", "SKIPPED"
 CONVERGING, NOT_CONVERGING, STALLED = "CONVERGING", "NOT CONVERGING", "STALLED"
-COVERAGE = 2.0  # k
+
+
+Entries = dict[tuple[str, ...], Entry]
 
 
 @dataclass(frozen=True)
@@ -157,43 +153,9 @@ class Outcome:
         return text + ")"
 
 
-def case_module(case: Case) -> ModuleType | None:
-    """measure.py in the folder of the case, if it has one."""
-    file = case.file.parent / "measure.py"
-    return _loaded(file) if file.exists() else None
-
-
-@functools.cache
-def _loaded(file: Path) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(f"case_{file.parent.name}", file)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def own(case: Case, name: str) -> Callable | None:
-    """A function that measure.py of the case offers beside its measures: curves, live_curves, family_curves,
-    stored_curves, live_options."""
-    return getattr(case_module(case), name, None)
-
-
-def measures(case: Case) -> dict[str, Callable[[Run], Measured]]:
-    """Observables by name: those of the case over those that all share."""
-    module = case_module(case)
-    return OBSERVABLES | ({name: value for name, value in vars(module).items() if callable(value)} if module else {})
-
-
-def measure(case: Case, observable: Observable, finished: Run) -> Measured:
-    known = measures(case)
-    if observable.name not in known:
-        raise CaseError(f"{case.file}: case.observable.name = {observable.name!r}: unknown; define it in "
-                        f"{case.file.parent / 'measure.py'} or take one of {', '.join(OBSERVABLES)}")
-    return known[observable.name](finished)
-
-
-def _height(case: Case, finished: Run) -> float:
+def _height(case: Case, entry: Entry) -> float:
     """What levels refine."""
-    return finished.scene["fluid"]["spacing"] if case.refined == "spacing" else finished.record["time_step"]
+    return entry.scene["fluid"]["spacing"] if case.refined == "spacing" else entry.record["time_step"]
 
 
 def _varied(vary: Vary, base: Measured, values: list[float]) -> float:
@@ -203,14 +165,14 @@ def _varied(vary: Vary, base: Measured, values: list[float]) -> float:
     return SAFETY * abs(values[0] - base.value) / (1 - vary.ratio**-vary.order) / COVERAGE
 
 
-def judge(case: Case, tier: str, runs: dict[tuple[str, ...], Run]) -> list[Outcome]:
-    """`runs` by their overrides, those of runner.jobs_of. Throws CaseError where an observable does not exist."""
+def judge(case: Case, tier: str, entries: Entries) -> list[Outcome]:
+    """`entries` by their overrides, those of runner.jobs_of."""
     outcomes = []
     for observable in case.observables:
         def of(overrides: tuple[str, ...], observable: Observable = observable) -> Measured:
-            return measure(case, observable, runs[overrides])
+            return entries[overrides].found.values[observable.name]
 
-        finished = [runs[level.overrides] for level in case.levels_of(tier)]
+        finished = [entries[level.overrides] for level in case.levels_of(tier)]
         levels = [of(level.overrides) for level in case.levels_of(tier)]
         heights = [_height(case, one) for one in finished]
         sources, convergence = {"time": levels[-1].uncertainty} if levels[-1].uncertainty else {}, None
@@ -239,11 +201,11 @@ def _at_zero(finest: Outcome) -> Outcome:
     return Outcome(observable, Measured(found.value, 0.0, objection), sources | {f"extrapolation ({found.how})": found.uncertainty})
 
 
-def beside(case: Case, runs: dict[tuple[str, ...], Run]) -> list[tuple[str, Outcome]]:
+def beside(case: Case, entries: Entries) -> list[tuple[str, Outcome]]:
     """What the manifest asks to measure beside its case, by its label: reported as it is."""
     base = case.quick_finest().overrides
     return [
-        (entry.label, Outcome(replace(observable, order=None), measure(case, observable, runs[base + entry.overrides])))
+        (entry.label, Outcome(replace(observable, order=None), entries[base + entry.overrides].found.values[observable.name]))
         for entry in case.beside
         for observable in case.observables
         if not observable.skipped

@@ -1,79 +1,72 @@
-"""References that are not written in a manifest: computed by another code in the same report, or looked up for the scene."""
+"""References that are not written in a manifest: computed by another code for the case, or looked up for the scene."""
 
-import shutil
-import subprocess
-import sys
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
-from pathlib import Path
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 from reference.published import look_up
-from verification.protocol.errors import CaseError
-from verification.protocol.machine import ROOT, cores
-from verification.protocol.quantity import Result, read_result
-from verification.protocol.run import Run
+from verification.codes.code import Code, find_code
+from verification.measures.measures import Values, measures_in
+from verification.protocol.errors import Beyond, CaseError, SolverError
+from verification.protocol.quantity import Level, Quantity
+from verification.store.laboratory import Laboratory, Request
 from verification.suite.case import Case, Observable
-from verification.suite.judge import own
-
-USAGE = 2  # exit code of a reference program on input that a user can mend
+from verification.suite.judge import Entries
+from verification.suite.parameters import scene_of
 
 
 @dataclass(frozen=True)
-class LiveRun:
-    """A run of the reference code: its result, and the folder of the files that the result names."""
+class Reference:
+    """What a reference code said of a case."""
 
-    result: Result
-    folder: Path
-
-
-def _from_root(path: Path) -> str:
-    """As a command called in the root of the repository may name it."""
-    whole = path.resolve()
-    return str(whole.relative_to(ROOT) if whole.is_relative_to(ROOT) else whole)
-
-
-def live_command(case: Case, tier: str, runs: dict[tuple[str, ...], Run], folder: Path) -> list[str]:
-    """For the finest level of the tier; measure.py of the case may add options that depend on the runs."""
-    options = own(case, "live_options")
-    measured = options(runs) if options else []
-    line = ["python3", "-m", f"reference.{case.live.code}", case.live.problem]
-    line += ["--scene", _from_root(case.file), "--out", _from_root(folder)]
-    for override in case.levels_of(tier)[-1].overrides:
-        line += ["--set", override]
-    return [*line, *case.live.options(tier), *measured]
+    code: str
+    version: str = ""
+    command: str = ""  # makes it again
+    inputs: str = ""  # SHA-256 of the files that the code was given
+    quantities: Mapping[str, Quantity] = field(default_factory=dict)
+    objection: str = ""  # why it cannot serve, if so
+    missing: str = ""  # what is not installed, and how to get it
+    key: str = ""  # of its run in the store
 
 
-def run_live(case: Case, tier: str, runs: dict[tuple[str, ...], Run], out: Path) -> LiveRun:
-    """Runs the reference code into out/CASE/live. Where it fails the result carries its last words as an objection."""
-    folder = out / case.name / "live"
-    shutil.rmtree(folder, ignore_errors=True)
-    line = live_command(case, tier, runs, folder)
-    done = subprocess.run([sys.executable, *line[1:]], cwd=ROOT, capture_output=True, text=True)
-    last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-    if done.returncode == USAGE:
-        raise CaseError(last)
-    if done.returncode != 0:
-        failed = Result(case.live.code, command=" ".join(line), objection=f"the reference code failed: {last}")
-        return LiveRun(failed, folder)
-    return LiveRun(read_result(folder), folder)
+def _quantity(stated: dict) -> Quantity:
+    return Quantity(**(stated | {"levels": tuple(Level(**level) for level in stated.get("levels", []))}))
 
 
-Say = Callable[[str], None]
+def reference_request(case: Case, tier: str, entries: Entries, code: Code) -> Request:
+    """For the finest level of the tier; measure.py of the case may add options that follow from what was measured."""
+    more = measures_in(case.file.parent).reference_options
+    measured = more([Values(entry.scene, entry.figures) for entry in entries.values()]) if more else {}
+    options = {"problem": case.live.problem} | case.live.options(tier) | measured
+    return Request(code, scene_of(case, case.levels_of(tier)[-1].overrides), f"{case.name}: reference", options=options, field=True)
 
 
-def run_all_live(cases: list[Case], tier: str, runs: dict[str, dict], out: Path, say: Say) -> dict[str, LiveRun]:
-    """Of all `cases` that have one, by their names; `runs` likewise."""
-    with ThreadPoolExecutor(cores()) as pool:
-        futures = {case.name: pool.submit(run_live, case, tier, runs[case.name], out) for case in cases if case.live}
-        found = {}
-        for name, future in futures.items():
-            found[name] = future.result()
-            say(f"{len(found)} of {len(futures)}, last {name}")
-        return found
+def look_up_reference(laboratory: Laboratory, case: Case, tier: str, entries: Entries, code: Code) -> Reference | None:
+    """What the store has; None where the code is to be run."""
+    if code.missing:
+        return Reference(code.name, missing=code.missing)
+    stored = laboratory.store.run(reference_request(case, tier, entries, code).key)
+    if stored is None:
+        return None
+    record = stored.record
+    return Reference(stored.code, stored.version, record["command"], record.get("inputs", ""),
+                     {name: _quantity(stated) for name, stated in record.get("quantities", {}).items()},
+                     record.get("objection", ""), key=stored.key)
 
 
-def _from_live(observable: Observable, live: Result, case: Case) -> Observable:
+def obtain_reference(laboratory: Laboratory, case: Case, tier: str, entries: Entries) -> Reference:
+    """From the store, or run now. Where the code fails, its last words are an objection, and nothing is kept."""
+    code = find_code(case.live.code)
+    known = look_up_reference(laboratory, case, tier, entries, code)
+    if known is not None:
+        return known
+    try:
+        laboratory.obtain(reference_request(case, tier, entries, code))
+    except (SolverError, Beyond) as error:
+        return Reference(code.name, code.version, objection=f"the reference code failed: {str(error).strip().splitlines()[-1]}")
+    return look_up_reference(laboratory, case, tier, entries, code)
+
+
+def _from_live(observable: Observable, live: Reference, case: Case) -> Observable:
     if live.missing:
         return replace(observable, skipped=live.missing, source=live.missing)
     if observable.live not in live.quantities:
@@ -92,7 +85,7 @@ def _from_table(observable: Observable, case: Case) -> Observable:
     return replace(observable, reference=found.value, uncertainty=found.uncertainty, source=found.source)
 
 
-def resolved(case: Case, live: Result | None) -> Case:
+def resolved(case: Case, live: Reference | None) -> Case:
     """The case with every reference filled in, or with why there is none. Throws CaseError."""
     found = []
     for observable in case.observables:

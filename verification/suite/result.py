@@ -1,25 +1,37 @@
-"""A case run and judged: every verdict there is on it."""
+"""A case judged: every verdict there is on it, from what the laboratory holds."""
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
-from verification.bits.conservation import Conservation, conservation, defect_line, totals
-from verification.bits.equivalence import Matrix, run_matrix
+from verification.bits.conservation import Conservation, conservation
+from verification.bits.equivalence import Matrix, Row, run_matrix
+from verification.codes.code import Code, find_code
 from verification.codes.mappm import Options, run
-from verification.protocol.run import Run
+from verification.measures.curve import kept_chart
+from verification.measures.measures import Point, measures_in
+from verification.measures.source import measure_id
+from verification.protocol.quantity import COVERAGE
+from verification.store.key import hash_of
+from verification.store.laboratory import Laboratory, made_now
+from verification.store.store import Found, Made
 from verification.suite.case import Case, Level
-from verification.suite.judge import SKIPPED, Outcome, beside, judge
-from verification.suite.references import LiveRun, resolved, run_live
-from verification.suite.runner import Job, jobs_of, run_jobs
+from verification.suite.judge import SKIPPED, Entries, Outcome, beside, judge
+from verification.suite.parameters import scene_of
+from verification.suite.references import Reference, look_up_reference, obtain_reference, resolved
+from verification.suite.runner import OWN, Entry, Job, jobs_of, look_up, perform
 
-Runs = dict[tuple[str, ...], Run]
+BOTH = "both "  # kind of the charts of a run and of a reference, before the key of that
+FACES_STEPS, FACES_RANKS = 200, 4
+
+Say = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class Exactness:
-    """Mass and momentum as equalities of integers, at every sample of every run."""
+    """Mass and momentum as equalities of integers, at every sample of every run of a code that counts in integers."""
 
     runs: int
     samples: int
@@ -33,92 +45,196 @@ class Exactness:
 
 
 @dataclass(frozen=True)
+class Bits:
+    """The equivalence matrix of a case, and the impulses over the faces between domains."""
+
+    matrix: Matrix
+    faces: Conservation
+    made: Made
+
+
+@dataclass(frozen=True)
 class CaseResult:
     case: Case
+    code: Code
     tier: str
-    runs: Runs
+    entries: Entries
     outcomes: tuple[Outcome, ...]
     beside: tuple[tuple[str, Outcome], ...]
     exact: Exactness
-    matrix: Matrix | None = None
-    faces: Conservation | None = None
-    live: LiveRun | None = None
+    bits: Bits | None = None
+    live: Reference | None = None
+    charts: tuple[dict, ...] = ()  # as kept, of the finest run alone and beside the reference
 
     @property
     def skipped(self) -> tuple[Outcome, ...]:
         return tuple(outcome for outcome in self.outcomes if outcome.verdict == SKIPPED)
 
     @property
+    def matrix(self) -> Matrix | None:
+        return self.bits.matrix if self.bits else None
+
+    @property
+    def faces(self) -> Conservation | None:
+        return self.bits.faces if self.bits else None
+
+    @property
     def holds(self) -> bool:
-        exact = not self.exact.defects and (self.matrix is None or self.matrix.equal)
-        exact = exact and (self.faces is None or self.faces.exact)
+        exact = not self.exact.defects and (self.bits is None or (self.bits.matrix.equal and self.bits.faces.exact))
         return exact and all(outcome.holds for outcome in self.outcomes)
 
     @property
-    def finest(self) -> Run:
-        return self.runs[self.case.levels_of(self.tier)[-1].overrides]
+    def finest(self) -> Entry:
+        return self.entries[self.case.levels_of(self.tier)[-1].overrides]
+
+    @property
+    def made(self) -> Made | None:
+        """Of its newest run."""
+        found = [entry.stored.made for entry in self.entries.values()] + ([self.bits.made] if self.bits else [])
+        return max(found, key=lambda made: made.made) if found else None
+
+    @property
+    def core_seconds(self) -> float:
+        """Of the finest run, without its set-up."""
+        return self.finest.stored.cost.core_seconds
 
     @property
     def lines(self) -> list[str]:
         lines = [outcome.line for outcome in self.outcomes]
         if self.live and not self.outcomes:
-            lines += [f"{name} = {quantity.value:.6g}, {quantity.note} ({self.live.result.code}, shown, not judged)"
-                      for name, quantity in self.live.result.quantities.items()]
+            lines += [f"{name} = {quantity.value:.6g}, {quantity.note} ({self.live.code}, shown, not judged)"
+                      for name, quantity in self.live.quantities.items()]
         lines += [f"beside it, {label}: {outcome.observable.symbol} = {outcome.measured.value:.6g}, {outcome.error_text} from "
                   f"{outcome.observable.reference:g}, without a verdict" for label, outcome in self.beside]
-        if self.matrix is not None:
-            lines += self.matrix.lines
-        if self.faces is not None:
-            lines += self.faces.lines
+        if self.bits is not None:
+            lines += self.bits.matrix.lines + self.bits.faces.lines
         return [*lines, self.exact.line] if self.exact.runs else lines
 
-
-def exactness(runs: Runs) -> Exactness:
-    samples, defects = 0, []
-    for finished in runs.values():
-        momentum, particles = totals(finished)
-        samples += len(momentum)
-        for name, by_step in (("momentum - start - impulse", momentum), ("change of the number of PPs", particles)):
-            if any(by_step.values()):
-                defects.append(f"{finished.folder.name}: {defect_line(name, by_step)}")
-    return Exactness(len(runs), samples, tuple(defects))
+    @property
+    def point(self) -> Point:
+        """For charts of a family."""
+        first, finest = self.outcomes[0], self.finest
+        reference = {name: found.value for name, found in self.live.quantities.items()} if self.live else {}
+        return Point(self.case.family, self.case.name.partition(".")[2], finest.scene, finest.figures, reference, first.measured.value,
+                     first.error, COVERAGE * first.u_num * first.scale, first.scale)
 
 
-def run_bits(case: Case, out: Path, say: Callable[[str], None]) -> tuple[Matrix, Conservation]:
-    """The equivalence matrix of a case, and the impulses over the faces between domains at every tenth step."""
-    matrix = run_matrix(case.file, case.equivalence, out / case.name / "matrix", say)
-    options = Options(ranks=4, steps=min(200, case.equivalence.steps), faces=True, overrides=("output.sample=10",))
-    return matrix, conservation(run(case.file, out / case.name / "faces", options))
+def exactness(entries: Entries) -> Exactness:
+    ledgers = [(entry.stored.label, entry.stored.ledger) for entry in entries.values() if entry.stored.ledger is not None]
+    defects = tuple(f"{label}: {line}" for label, ledger in ledgers for line in ledger.defects)
+    return Exactness(len(ledgers), sum(ledger.samples for _, ledger in ledgers), defects)
 
 
-def judged(case: Case, tier: str, runs: Runs, bits: tuple[Matrix, Conservation] | None = None,
-           live: LiveRun | None = None) -> CaseResult:
-    known = resolved(case, live.result if live else None)
-    outcomes, others = tuple(judge(known, tier, runs)), tuple(beside(known, runs))
-    return CaseResult(known, tier, runs, outcomes, others, exactness(runs), *(bits or (None, None)), live)
+# Equality of bits.
 
 
-def run_case(case: Case, tier: str, out: Path, ranks: int, jobs_at_a_time: int, say: Callable[[str], None]) -> CaseResult:
-    """All that the manifest asks for, below out/NAME. `say` is told of every run that ends."""
+def _bits_key(case: Case, code: Code) -> str:
+    labels = [variant.label for variant in case.equivalence.variants]
+    return hash_of({"numerics": code.numerics_version, "scene": scene_of(case, case.base) | {"case": None},
+                    "steps": case.equivalence.steps, "every": case.equivalence.every, "variants": labels})[:24]
+
+
+def _kept_bits(matrix: Matrix, faces: Conservation) -> dict:
+    return {"rows": [asdict(row) for row in matrix.rows], "faces": asdict(faces)}
+
+
+def _bits(kept: dict, made: Made) -> Bits:
+    by_step = {name: {int(step): defect for step, defect in value.items()} if isinstance(value, dict) else value
+               for name, value in kept["faces"].items()}
+    return Bits(Matrix(tuple(Row(**row) for row in kept["rows"])), Conservation(**by_step), made)
+
+
+def look_up_bits(laboratory: Laboratory, case: Case, code: Code) -> Bits | None:
+    found = laboratory.store.matrix(_bits_key(case, code))
+    return _bits(*found) if found else None
+
+
+def obtain_bits(laboratory: Laboratory, case: Case, code: Code, say: Say, anew: bool = False) -> Bits:
+    """From the store, or run now: the matrix, and the faces at every tenth step. One with a skipped variant is not kept, so that it is
+    run again where that can be had."""
+    if not anew and (known := look_up_bits(laboratory, case, code)) is not None:
+        return known
+    with TemporaryDirectory(dir=laboratory.folder) as scratch:
+        matrix = run_matrix(case.file, case.equivalence, Path(scratch) / "matrix", say)
+        options = Options(ranks=FACES_RANKS, steps=min(FACES_STEPS, case.equivalence.steps), faces=True, overrides=("output.sample=10",))
+        faces = conservation(run(case.file, Path(scratch) / "faces", options))
+    made = made_now()
+    if not any(row.skipped for row in matrix.rows):
+        laboratory.store.enter_matrix(_bits_key(case, code), case.name, _kept_bits(matrix, faces), made)
+    return Bits(matrix, faces, made)
+
+
+# Judging.
+
+
+def _keep_charts_of_both(laboratory: Laboratory, case: Case, finest: Entry, live: Reference) -> None:
+    """While the folders of both runs are there."""
+    draw, kind = measures_in(case.file.parent).charts_of_both, BOTH + live.key
+    own, other = laboratory.run(finest.stored.key), laboratory.run(live.key) if live.key else None
+    if draw is None or kind in finest.found.charts or own is None or other is None or not live.quantities:
+        return
+    charts = {kind: [kept_chart(chart) for chart in draw(own, other)]}
+    laboratory.store.enter_found(finest.stored.key, measure_id(case.file.parent), Found(charts=charts))
+
+
+def _charts(laboratory: Laboratory, case: Case, finest: Entry, live: Reference | None) -> tuple[dict, ...]:
+    kept = laboratory.store.found(finest.stored.key, measure_id(case.file.parent)).charts
+    return (*kept.get(OWN, []), *(kept.get(BOTH + live.key, []) if live and live.key else []))
+
+
+def judged(laboratory: Laboratory, case: Case, tier: str, code: Code, entries: Entries, bits: Bits | None = None,
+           live: Reference | None = None) -> CaseResult:
+    known = resolved(case, live)
+    outcomes, others = tuple(judge(known, tier, entries)), tuple(beside(known, entries))
+    charts = _charts(laboratory, case, entries[case.levels_of(tier)[-1].overrides], live) if entries else ()
+    return CaseResult(known, code, tier, entries, outcomes, others, exactness(entries), bits, live, charts)
+
+
+def collect(laboratory: Laboratory, case: Case, tier: str, code: Code) -> CaseResult | None:
+    """From the store alone; None where something of it is missing."""
+    entries = {}
+    for job in jobs_of(case, tier, code):
+        entry = look_up(laboratory, job)
+        if entry is None:
+            return None
+        entries[job.overrides] = entry
+    bits = look_up_bits(laboratory, case, code) if case.equivalence is not None else None
+    live = look_up_reference(laboratory, case, tier, entries, find_code(case.live.code)) if case.live else None
+    if (case.equivalence is not None and bits is None) or (case.live is not None and live is None):
+        return None
+    return judged(laboratory, case, tier, code, entries, bits, live)
+
+
+@dataclass(frozen=True)
+class Way:
+    """How what is missing is run."""
+
+    cores: int = 1  # of each run
+    workers: int = 1  # runs at a time
+    anew: bool = False  # also what the store has
+
+
+def run_case(laboratory: Laboratory, case: Case, tier: str, code: Code, way: Way, say: Say) -> CaseResult:
+    """All that the manifest asks for. `say` is told of every run that ends. Throws SolverError, CaseError, Beyond, StoreError."""
     started = time.monotonic()
 
     def told(job: Job, share: float) -> None:
         left = (time.monotonic() - started) * (1 - share) / share
         say(f"{case.name}: {job.label}: done; {left:.0f} s to go")
 
-    jobs = jobs_of(case, tier)
-    runs = run_jobs(jobs, out, Options(ranks=ranks), jobs_at_a_time, told)
-    bits = run_bits(case, out, say) if case.equivalence is not None else None
-    own = {overrides: finished for (_, overrides), finished in runs.items()}
-    return judged(case, tier, own, bits, run_live(case, tier, own, out) if case.live else None)
+    jobs = jobs_of(case, tier, code, way.cores)
+    perform(laboratory, jobs, way.workers, told, way.anew)
+    bits = obtain_bits(laboratory, case, code, say, way.anew) if case.equivalence is not None else None
+    entries = {job.overrides: look_up(laboratory, job) for job in jobs}
+    live = obtain_reference(laboratory, case, tier, entries) if case.live else None
+    if live is not None and case.observables:
+        _keep_charts_of_both(laboratory, case, entries[case.levels_of(tier)[-1].overrides], live)
+    return judged(laboratory, case, tier, code, entries, bits, live)
 
 
-def run_with(case: Case, out: Path, overrides: tuple[str, ...], ranks: int = 1) -> CaseResult:
+def run_with(laboratory: Laboratory, case: Case, overrides: tuple[str, ...], code: Code, way: Way) -> CaseResult:
     """The scene alone with overrides of the user: no levels, nothing varied, so the goals alone decide."""
     overrides = case.base + overrides
     observables = tuple(replace(observable, order=None, extrapolated=None) for observable in case.observables)
-    alone = replace(case, observables=observables, levels=(Level(overrides, "quick"),), vary=(), beside=(),
-                    equivalence=None, stalls="")
-    finished = run_jobs([Job(alone, overrides)], out, Options(ranks=ranks), 1)[case.name, overrides]
-    runs = {overrides: finished}
-    return judged(alone, "quick", runs, live=run_live(alone, "quick", runs, out) if case.live else None)
+    alone = replace(case, observables=observables, levels=(Level(overrides, "quick"),), vary=(), beside=(), equivalence=None, stalls="")
+    return run_case(laboratory, alone, "quick", code, way, lambda text: None)

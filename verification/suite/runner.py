@@ -1,16 +1,46 @@
-"""The runs that a case needs, and running them a few at a time."""
+"""The runs that a case needs: taken from the laboratory or made there, a few at a time, and measured."""
 
-import hashlib
-import shutil
+import os
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from pathlib import Path
 
-from verification.codes.mappm import Options, run
+from verification.codes.code import Code
+from verification.measures.curve import kept_chart
+from verification.measures.measures import Measures, measures_in
+from verification.measures.observables import OBSERVABLES
+from verification.measures.source import measure_id
+from verification.protocol.errors import CaseError
+from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
+from verification.store.laboratory import Laboratory, Request
+from verification.store.store import Found, StoredRun
 from verification.suite.case import Case
+from verification.suite.parameters import scene_of
+
+OWN, FIGURE = "own", "figure "  # kind of the charts of a run; before the names of figures that are no observables
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A run of a case as the store has it, and what was measured of it."""
+
+    stored: StoredRun
+    found: Found
+
+    @property
+    def scene(self) -> dict:
+        return self.stored.scene
+
+    @property
+    def record(self) -> dict:
+        return self.stored.record
+
+    @property
+    def figures(self) -> dict[str, float]:
+        """All values by name, observables and others."""
+        return {name.removeprefix(FIGURE): one.value for name, one in self.found.values.items()}
 
 
 @dataclass(frozen=True)
@@ -19,28 +49,29 @@ class Job:
 
     case: Case
     overrides: tuple[str, ...]
+    code: Code
+    finest: bool = False  # of a tier: then its charts and its last field are kept
+    cores: int = 1
 
     @property
     def label(self) -> str:
         return " ".join(self.overrides[len(self.case.base) :]) or "as declared"
 
     @property
-    def folder_name(self) -> str:
-        """Short, the same for the same overrides."""
-        return hashlib.sha256("\n".join(self.overrides).encode()).hexdigest()[:12] if self.overrides else "scene"
+    def request(self) -> Request:
+        return Request(self.code, scene_of(self.case, self.overrides), f"{self.case.name}: {self.label}", cores=self.cores, field=self.finest)
 
     @property
     def weight(self) -> float:
-        """Cost relative to the scene as declared: particles times steps, where the spacing is overridden."""
+        """Core-seconds, about: the cost of the case, and from it by particles times steps where the spacing is another."""
         declared = self.case.scene.get("fluid", {}).get("spacing")
-        for override in reversed(self.overrides):  # the last one counts
-            key, _, value = override.partition("=")
-            if key == "fluid.spacing" and isinstance(declared, (int, float)):
-                return (declared / float(value)) ** (len(self.case.scene["box"]["size"]) + 1)
-        return 1.0
+        spacing = scene_of(self.case, self.overrides).get("fluid", {}).get("spacing")
+        if not isinstance(declared, (int, float)) or not isinstance(spacing, (int, float)):
+            return self.case.cost
+        return self.case.cost * (declared / spacing) ** (len(self.case.scene["box"]["size"]) + 1)
 
 
-def jobs_of(case: Case, tier: str) -> list[Job]:
+def jobs_of(case: Case, tier: str, code: Code, cores: int = 1) -> list[Job]:
     """Levels, variations and what is measured beside, without repeats."""
     if not case.observables:
         return []
@@ -49,36 +80,96 @@ def jobs_of(case: Case, tier: str) -> list[Job]:
     sets += [base + chosen for vary in case.vary for chosen in vary.sets]
     sets += [base] if case.vary else []
     sets += [base + beside.overrides for beside in case.beside]
-    return [Job(case, overrides) for overrides in dict.fromkeys(sets)]
+    finest = {base, case.levels_of("full")[-1].overrides}
+    return [Job(case, one, code, one in finest, cores) for one in dict.fromkeys(sets)]
 
 
-Done = Callable[[Job, float], None]
+# Measuring.
 
 
-def run_jobs(jobs: list[Job], out: Path, options: Options, workers: int, done: Done = lambda job, share: None) -> dict:
-    """Runs all, the longest first, `workers` at a time, each in out/CASE/RUN. Returns {(case name, overrides): Run}.
+def _names(case: Case, measures: Measures) -> list[str]:
+    """Of what is measured of every run of a case. Throws CaseError where an observable does not exist."""
+    known = OBSERVABLES | dict(measures.observables)
+    names = list(dict.fromkeys(observable.name for observable in case.observables))
+    for name in names:
+        if name not in known:
+            raise CaseError(f"{case.file}: case.observable.name = {name!r}: unknown; define it in "
+                            f"{case.file.parent / 'measure.py'} or take one of {', '.join(sorted(known))}")
+    return names + [FIGURE + name for name in measures.figures]
 
-    `done` is called after each with the share of the expected work that is behind. The first error ends it: SolverError.
+
+def _value(name: str, measures: Measures, run: Run, code: Code) -> Measured:
+    """A figure that the code states itself under that name counts in place of a measure."""
+    if name.startswith(FIGURE):
+        return Measured(float(measures.figures[name.removeprefix(FIGURE)](run)), 0.0)
+    stated = run.record.get("quantities", {}).get(name)
+    if stated is not None:
+        return Measured(stated["value"], stated["uncertainty"], run.record.get("objection", ""))
+    return (OBSERVABLES | dict(measures.observables))[name](run)
+
+
+def measured(case: Case, run: Run, code: Code, with_charts: bool) -> Found:
+    """All that the case asks of one run. Throws CaseError where the code did not leave what a measure needs."""
+    measures = measures_in(case.file.parent)
+    values = {}
+    for name in _names(case, measures):
+        try:
+            values[name] = _value(name, measures, run, code)
+        except (KeyError, IndexError, FileNotFoundError) as error:
+            raise CaseError(f"{case.name}: {name} by {code.name}: {error} in {run.folder}") from error
+    charts = {}
+    if with_charts and measures.charts is not None:
+        charts[OWN] = [kept_chart(chart) for chart in measures.charts(run)]
+    return Found(values, charts)
+
+
+def look_up(laboratory: Laboratory, job: Job) -> Entry | None:
+    """What the store has of a job; None where the run or something measured of it is missing."""
+    stored = laboratory.store.run(job.request.key)
+    if stored is None:
+        return None
+    measures = measures_in(job.case.file.parent)
+    found = laboratory.store.found(stored.key, measure_id(job.case.file.parent))
+    whole = all(name in found.values for name in _names(job.case, measures))
+    whole = whole and not (job.finest and measures.charts is not None and OWN not in found.charts)
+    return Entry(stored, found) if whole else None
+
+
+def obtain(laboratory: Laboratory, job: Job, anew: bool = False) -> Entry:
+    """From the store, or run and measured now. Throws SolverError, CaseError, Beyond and StoreError."""
+    if not anew and (known := look_up(laboratory, job)) is not None:
+        return known
+    stored = laboratory.obtain(job.request, anew, folder_too=True)
+    found = measured(job.case, laboratory.run(stored.key), job.code, job.finest)
+    laboratory.store.enter_found(stored.key, measure_id(job.case.file.parent), found)
+    return Entry(stored, found)
+
+
+Told = Callable[[Job, float], None]
+
+
+def perform(laboratory: Laboratory, jobs: list[Job], workers: int, told: Told = lambda job, share: None, anew: bool = False) -> None:
+    """Makes all that is missing, the longest first, `workers` at a time.
+
+    `told` is called after each with the share of the expected work that is behind. The first error ends it.
     """
-    total = sum(job.weight * job.case.cost for job in jobs) or 1.0
+    waiting = jobs if anew else [job for job in jobs if look_up(laboratory, job) is None]
+    weights = {id(job): job.weight for job in waiting}
+    total = sum(weights.values()) or 1.0
     behind, lock = 0.0, threading.Lock()
 
-    def one(job: Job) -> Run:
+    def one(job: Job) -> None:
         nonlocal behind
-        chosen = Options(ranks=options.ranks, overrides=job.overrides + options.overrides)
-        folder = out / job.case.name / job.folder_name
-        shutil.rmtree(folder, ignore_errors=True)  # snapshots of an earlier run would be read as of this one
-        finished = run(job.case.file, folder, chosen)
+        obtain(laboratory, job, anew)
         with lock:
-            behind += job.weight * job.case.cost
-            done(job, behind / total)
-        return finished
+            behind += weights[id(job)]
+            told(job, behind / total)
 
-    ordered = sorted(jobs, key=lambda job: -job.weight * job.case.cost)
-    with ThreadPoolExecutor(workers) as pool:
-        futures = {(job.case.name, job.overrides): pool.submit(one, job) for job in ordered}
+    with ThreadPoolExecutor(max(1, min(workers, os.cpu_count() or 1))) as pool:
+        futures = [pool.submit(one, job) for job in sorted(waiting, key=lambda job: -weights[id(job)])]
         try:
-            return {key: future.result() for key, future in futures.items()}
+            for future in futures:
+                future.result()
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
