@@ -7,3 +7,15 @@ class CaseError(ValueError):
 
 class SolverError(RuntimeError):
     """A run that did not end well; carries the solver's own message."""
+
+
+class OutputError(SolverError):
+    """A run that left files which are not what the protocol asks for: names file, field and fault."""
+
+
+class Beyond(RuntimeError):
+    """A scene that a code cannot do, or a code that is not installed: SKIPPED, for the reason it carries."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(reason)
+        self.reason = reason
