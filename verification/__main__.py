@@ -1,4 +1,4 @@
-"""python3 -m verification list | run CASE | report | compare-bits SCENE"""
+"""python3 -m verification list | run CASE | report | compare-bits SCENE | conform ADAPTER"""
 
 import argparse
 import sys
@@ -7,6 +7,8 @@ import textwrap
 from pathlib import Path
 
 from verification.bits.compare import compare, explain
+from verification.codes.code import all_codes
+from verification.codes.conform import conform
 from verification.codes.mappm import Options, run
 from verification.protocol.errors import CaseError, SolverError
 from verification.protocol.machine import ROOT, cores
@@ -107,6 +109,9 @@ def _parser() -> argparse.ArgumentParser:
     bits.add_argument("--steps", type=int, help="default: those of the scene")
     bits.add_argument("--every", type=int, metavar="K", help="steps between comparisons (default: those of the scene)")
     bits.add_argument("--build", type=Path, metavar="DIR", help="folder whose bin/mappm is compared (default: as for run)")
+
+    adapter = commands.add_parser("conform", help="hold the adapter of a code against the protocol")
+    adapter.add_argument("adapter", help=f"{', '.join(all_codes())}, or the path of an executable or of a .py file")
     return parser
 
 
@@ -119,6 +124,8 @@ def main() -> int:
             return run_named(arguments)
         case "compare-bits":
             return compare_bits(arguments.scene, arguments.ranks, arguments.steps, arguments.every, arguments.build)
+        case "conform":
+            return conform(arguments.adapter)
         case "report":
             from verification.report.report import write_report  # drawing libraries load slowly
 

@@ -1,10 +1,19 @@
-"""Runs the two solvers."""
+"""MaPPM: runs its two programs, and is the adapter of the parallel one.
 
+    python3 -m verification.codes.mappm describe | run --scene FILE --out DIR ...
+"""
+
+import json
 import os
+import re
 import subprocess
+import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from verification.protocol.adapter import BAD_INPUT, Adapter, BadInput, Failed, Left, Task, core_seconds_of_children, main
+from verification.protocol.capability import CAPABILITIES
 from verification.protocol.errors import SolverError
 from verification.protocol.machine import ROOT
 from verification.protocol.run import Run
@@ -123,3 +132,81 @@ def run(scene: Path, out: Path, options: Options = DEFAULT) -> Run:
     if process.returncode != 0:
         raise SolverError(f"{' '.join(process.args)}\nended with {process.returncode}\n{stdout[-2000:]}{stderr[-4000:]}")
     return Run(out)
+
+
+class Solver(Adapter):
+    """One of the two programs behind the protocol. `allowed` are flags of it that an --option may set; ranks are cores over
+    threads."""
+
+    capabilities = frozenset(CAPABILITIES)
+
+    def __init__(self, name: str, allowed: tuple[str, ...], most_cores: int | None = None) -> None:
+        self.name, self.allowed, self.most_cores = name, allowed, most_cores
+
+    def missing(self) -> str:
+        try:
+            program(self.name)
+        except SolverError as error:
+            return str(error)
+        return ""
+
+    def _said(self) -> re.Match:
+        """`NAME 1.0.0 (COMMIT), numerics 2, avx512`."""
+        said = subprocess.run([program(self.name), "--version"], capture_output=True, text=True, check=True).stdout
+        found = re.match(rf"{self.name} (\S+) \(.*\), numerics (\d+)", said)
+        if not found:
+            raise Failed(f"--version says {said.strip()!r}, which is not understood")
+        return found
+
+    def version(self) -> str:
+        return self._said()[1]
+
+    def numerics_version(self) -> int:
+        return int(self._said()[2])
+
+    def _ranks(self, task: Task) -> int:
+        """0 for the serial program. Throws BadInput."""
+        if self.most_cores and task.cores > self.most_cores:
+            raise BadInput(f"--cores {task.cores}: {self.name} takes {self.most_cores}")
+        threads = _whole(task.options, "threads", 1)
+        if task.cores % threads:
+            raise BadInput(f"--cores {task.cores}: must be a multiple of threads={threads}")
+        return 0 if self.name == "mappm-reference" else task.cores // threads
+
+    def _command(self, task: Task) -> list[str]:
+        unknown = set(task.options) - set(self.allowed)
+        if unknown:
+            raise BadInput(f"--option {', '.join(sorted(unknown))}: unknown; known are {', '.join(self.allowed)}")
+        line = Options(ranks=self._ranks(task), steps=task.steps, overwrite=False).command(task.file, task.out)
+        for key, value in task.options.items():
+            line += [f"--{key}", value]
+        return line
+
+    def run(self, task: Task) -> Left:
+        used = core_seconds_of_children()
+        done = subprocess.run(self._command(task), env=os.environ | MPI_ENVIRONMENT, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise (BadInput if done.returncode == BAD_INPUT else Failed)(_words(done))
+        record = json.loads((task.out / "run.json").read_text())
+        (task.out / "run.json").unlink()  # until it is whole
+        stepping = record["wall_seconds"]["steps"] * task.cores
+        setup = max(0.0, core_seconds_of_children() - used - stepping)
+        return Left(digest=record["digest"], setup_core_seconds=setup, more=record)
+
+
+def _words(done: subprocess.CompletedProcess) -> str:
+    """The error that the program told, among what mpirun says about it."""
+    lines = (done.stderr.strip() or done.stdout.strip() or f"ended with {done.returncode}").splitlines()
+    told = [line.removeprefix("error: ") for line in lines if line.startswith("error: ")]
+    return (told or [line for line in lines if not line.startswith("Run with --help")] or lines)[-1]
+
+
+def _whole(options: Mapping[str, str], key: str, default: int) -> int:
+    text = options.get(key, str(default))
+    if not text.isdigit() or int(text) < 1:
+        raise BadInput(f"--option {key}={text}: must be a whole number of at least 1")
+    return int(text)
+
+
+if __name__ == "__main__":
+    sys.exit(main(Solver("mappm", ("domains", "threads", "rebalance", "isa"))))

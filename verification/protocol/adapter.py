@@ -23,6 +23,7 @@ from pathlib import Path
 
 from verification.protocol.capability import CAPABILITIES, asked_by, lacking
 from verification.protocol.quantity import Quantity
+from verification.protocol.scene import fault_of
 
 BAD_INPUT, CANNOT, FAILED = 2, 3, 1  # exit statuses
 
@@ -99,8 +100,18 @@ def describe(adapter: Adapter) -> dict:
     return found if number is None else found | {"numerics_version": number}
 
 
+def _core_seconds_of(who: int) -> float:
+    used = resource.getrusage(who)
+    return used.ru_utime + used.ru_stime
+
+
+def core_seconds_of_children() -> float:
+    """Of the programs that ended so far."""
+    return _core_seconds_of(resource.RUSAGE_CHILDREN)
+
+
 def _core_seconds() -> float:
-    return sum(used.ru_utime + used.ru_stime for used in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
+    return _core_seconds_of(resource.RUSAGE_SELF) + core_seconds_of_children()
 
 
 def _peak_memory() -> int:
@@ -127,6 +138,8 @@ def _task(chosen: argparse.Namespace) -> Task:
         raise BadInput(f"--scene {chosen.scene}: {error.strerror}; give the file of a scene") from None
     except tomllib.TOMLDecodeError as error:
         raise BadInput(f"--scene {chosen.scene}: no TOML: {error}") from None
+    if fault := fault_of(scene):
+        raise BadInput(f"{chosen.scene}: {fault}")
     return Task(chosen.scene, scene, chosen.out, chosen.cores, chosen.steps, _options(chosen.option))
 
 
@@ -143,8 +156,9 @@ def _run(adapter: Adapter, task: Task, command: str) -> None:
     cost = {"core_seconds": max(0.0, whole - left.setup_core_seconds), "setup_core_seconds": left.setup_core_seconds,
             "wall_seconds": time.monotonic() - began, "cores": task.cores, "peak_memory": _peak_memory()}
     record = left.more | {
-        "code": adapter.name, "version": adapter.version(), "command": command, "scene": {"text": task.file.read_text()},
-        "cost": cost, "quantities": {name: asdict(value) for name, value in left.quantities.items()}, "objection": left.objection,
+        "code": adapter.name, "version": adapter.version(), "command": command,
+        "scene": left.more.get("scene", {}) | {"text": task.file.read_text()}, "cost": cost,
+        "quantities": {name: asdict(value) for name, value in left.quantities.items()}, "objection": left.objection,
     }
     if left.digest:
         record["digest"] = left.digest

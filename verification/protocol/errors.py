@@ -11,3 +11,13 @@ class SolverError(RuntimeError):
 
 class StoreError(RuntimeError):
     """A store that cannot be read or written: names the file, what is wrong and the fix. Nothing that it held is lost."""
+class OutputError(SolverError):
+    """A run that left files which are not what the protocol asks for: names file, field and fault."""
+
+
+class Beyond(RuntimeError):
+    """A scene that a code cannot do, or a code that is not installed: SKIPPED, for the reason it carries."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(reason)
+        self.reason = reason

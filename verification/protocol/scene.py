@@ -16,6 +16,37 @@ def in_si(quantity: float | str) -> float:
     return float(number) * UNITS[unit]
 
 
+def _quantity_fault(key: str, value: object) -> str:
+    """Why a value is no positive quantity; empty where it is one."""
+    try:
+        sound = not isinstance(value, bool) and in_si(value) > 0
+    except (AttributeError, KeyError, ValueError):
+        return f"{key} = {value!r}: must be a number, or a text such as \"10 mm\""
+    return "" if sound else f"{key} = {value!r}: must be positive"
+
+
+def fault_of(scene: dict) -> str:
+    """What no code could use a scene with, by key, value and fix; empty where the keys that all need are there."""
+    for name in ("box", "fluid"):
+        if not isinstance(scene.get(name), dict):
+            return f"{name}: missing; add a table"
+    size = scene["box"].get("size")
+    if not isinstance(size, list) or len(size) not in (2, 3):
+        return f"box.size = {size!r}: must be two or three lengths"
+    fluid = scene["fluid"]
+    needed = ("density", "spacing", *(("viscosity",) if fluid.get("particles", True) else ()))
+    for key in needed:
+        if key not in fluid:
+            return f"fluid.{key}: missing; add it"
+    for place, body in enumerate(scene.get("body", [])):
+        if not isinstance(body.get("shape"), str):
+            return f"body.{place}.shape: missing; add it"
+        if body.get("motion", "free") not in ("fixed", "moving", "free"):
+            return f"body.{place}.motion = {body['motion']!r}: must be fixed, moving or free"
+    named = [("box.size", side) for side in size] + [(f"fluid.{key}", fluid[key]) for key in needed]
+    return next(filter(None, (_quantity_fault(key, value) for key, value in named)), "")
+
+
 def _parsed(text: str):
     """The value of an override, as TOML; a bare word is a text."""
     try:

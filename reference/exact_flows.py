@@ -1,0 +1,167 @@
+"""Exact solutions of the Navier-Stokes equations for the scenes that have one, from the scene alone.
+
+Periodic fields that decay as exp(-nu lambda t) while a mean stream carries them, and plane channels whose walls start to
+move or whose body force starts to act, as sums of decaying modes (Batchelor 1967, section 4.3).
+"""
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from verification.protocol.adapter import Cannot
+from verification.protocol.scene import in_si
+
+FIELDS = ("wave", "vortices", "abc")
+AXES = "xyz"
+DECAYED = 40.0  # a mode that has lost exp(-40) is beyond the digits of a double
+
+
+def _vector(values: list | None) -> np.ndarray:
+    """Three numbers; those that are not given are 0."""
+    whole = np.zeros(3)
+    for axis, value in enumerate(values or []):
+        whole[axis] = in_si(value)
+    return whole
+
+
+class Exact(ABC):
+    """The velocity at any place and time, in the units of the scene."""
+
+    @abstractmethod
+    def velocity(self, points: np.ndarray, time: float) -> np.ndarray:
+        """At points (n, 3): (n, 3)."""
+
+    def holds_fluid(self, points: np.ndarray) -> np.ndarray:
+        """Which of the points (n, 3) lie in the fluid: (n)."""
+        return np.ones(len(points), dtype=bool)
+
+
+@dataclass(frozen=True)
+class Decaying(Exact):
+    """u = U + A f(x - U t) exp(-nu lambda t), lap f = -lambda f; k = 2 pi mode / side of each axis."""
+
+    kind: str
+    amplitude: float
+    k: np.ndarray  # (3)
+    rate: float  # nu lambda
+    along: int = 0  # of a wave
+    across: int = 1
+    stream: np.ndarray = field(default_factory=lambda: np.zeros(3))
+
+    def _shape(self, points: np.ndarray) -> np.ndarray:
+        x, y, z = (points * self.k).T
+        if self.kind == "wave":
+            found = np.zeros_like(points)
+            found[:, self.along] = np.sin(self.k[self.across] * points[:, self.across])
+            return found
+        if self.kind == "vortices":
+            return np.column_stack([np.sin(x) * np.cos(y), -np.cos(x) * np.sin(y), np.zeros(len(points))])
+        return np.column_stack([np.sin(z) + np.cos(y), np.sin(x) + np.cos(z), np.sin(y) + np.cos(x)])
+
+    def velocity(self, points: np.ndarray, time: float) -> np.ndarray:
+        return self.stream + self.amplitude * math.exp(-self.rate * time) * self._shape(points - self.stream * time)
+
+
+@dataclass(frozen=True)
+class Channel(Exact):
+    """Fluid at rest between plane walls of which one or both start to move, or which a body force starts to drive.
+
+    With eta = (y - y_0) / H and tau = nu t / H^2 the flow is its steady state u_s less a sum of modes,
+    u = u_s - sum_n b_n sin(n pi eta) exp(-n^2 pi^2 tau), u_s = U_0 + (U_1 - U_0) eta + g H^2 eta (1 - eta) / (2 nu),
+    b_n = 2 (U_0 - (-1)^n U_1) / (n pi) + 2 (1 - (-1)^n) g H^2 / (nu n^3 pi^3).
+    """
+
+    normal: int
+    start: float  # y_0
+    width: float  # H
+    side: float  # of the periodic box along the normal
+    viscosity: float  # nu
+    lower: np.ndarray  # (3), U_0
+    upper: np.ndarray  # (3), U_1
+    force: np.ndarray  # (3), g
+
+    def _eta(self, points: np.ndarray) -> np.ndarray:
+        return (points[:, self.normal] - self.start) % self.side / self.width
+
+    def holds_fluid(self, points: np.ndarray) -> np.ndarray:
+        eta = self._eta(points)
+        return (eta > 1e-9) & (eta < 1 - 1e-9)
+
+    def velocity(self, points: np.ndarray, time: float) -> np.ndarray:
+        if time <= 0:
+            return np.zeros_like(points)
+        eta, tau = self._eta(points)[:, None], self.viscosity * time / self.width**2
+        driven = self.force * self.width**2 / self.viscosity
+        found = self.lower + (self.upper - self.lower) * eta + driven * eta * (1 - eta) / 2
+        for n in range(1, math.ceil(math.sqrt(DECAYED / tau) / math.pi) + 1):
+            odd = 1 - (-1) ** n
+            mode = 2 * (self.lower - (-1) ** n * self.upper) / (n * math.pi) + 2 * odd * driven / (n * math.pi) ** 3
+            found = found - mode * np.sin(n * math.pi * eta) * math.exp(-((n * math.pi) ** 2) * tau)
+        return found
+
+
+def exact_flow(scene: dict) -> Exact:
+    """The exact solution of a scene. Throws Cannot where none is known here."""
+    fluid, force = scene["fluid"], scene.get("force", {})
+    if not fluid.get("particles", True):
+        raise Cannot("no fluid")
+    if scene.get("run", {}).get("relax", 0):
+        raise Cannot("run.relax: what the relaxation does has no exact solution")
+    if any(name in force for name in FIELDS):
+        raise Cannot("a force that is a field has no exact solution here")
+    bodies = scene.get("body", [])
+    if any(body.get("shape") != "wall" for body in bodies):
+        raise Cannot("flow about bodies has no exact solution here")
+    return _channel(scene) if bodies else _decaying(scene)
+
+
+def _viscosity(fluid: dict) -> float:
+    return in_si(fluid["viscosity"]) / in_si(fluid["density"])
+
+
+def _decaying(scene: dict) -> Decaying:
+    fluid, size = scene["fluid"], [in_si(side) for side in scene["box"]["size"]]
+    found = [kind for kind in FIELDS if kind in fluid]
+    if len(found) != 1:
+        raise Cannot("a periodic scene needs one of fluid.wave, fluid.vortices, fluid.abc")
+    if np.any(_vector(scene.get("force", {}).get("fluid"))):
+        raise Cannot("a periodic fluid under a force has no exact solution here")
+    (kind,) = found
+    table = fluid[kind]
+    if kind == "vortices" and len(size) == 3:
+        raise Cannot("of vortices in space only the start is exact")
+    k = np.zeros(3)
+    k[: len(size)] = 2 * math.pi * table.get("mode", 1) / np.array(size)
+    axes = [AXES.index(table[name]) for name in ("direction", "gradient")] if kind == "wave" else [0, 1]
+    if axes[0] == axes[1]:
+        raise Cannot("a wave along its own gradient is sound, which has no exact solution here")
+    eigenvalue = {"wave": k[axes[1]] ** 2, "vortices": k @ k, "abc": k[0] ** 2}[kind]
+    return Decaying(kind, in_si(table["amplitude"]), k, float(_viscosity(fluid) * eigenvalue), *axes, _vector(fluid.get("velocity")))
+
+
+def _channel(scene: dict) -> Channel:
+    fluid, walls, size = scene["fluid"], scene["body"], scene["box"]["size"]
+    last = AXES[len(size) - 1]
+    axes = {wall.get("axis", last) for wall in walls}
+    if len(axes) > 1 or any("extent" in wall for wall in walls):
+        raise Cannot("walls that are not parallel, or limited, have no exact solution here")
+    if any(kind in fluid for kind in FIELDS) or np.any(_vector(fluid.get("velocity"))):
+        raise Cannot("between walls the fluid must start at rest")
+    normal = AXES.index(axes.pop())
+    force = _vector(scene.get("force", {}).get("fluid"))
+    if force[normal]:
+        raise Cannot("a force across the walls has no exact solution here")
+    side, order = in_si(size[normal]), sorted(walls, key=lambda wall: in_si(wall["position"]))
+    gaps = []
+    for below, above in zip(order, order[1:] + order[:1], strict=True):
+        start = in_si(below["position"]) + in_si(below["thickness"])
+        width = in_si(above["position"]) - start + (side if above is order[0] else 0.0)
+        if width > 1e-3 * in_si(fluid["spacing"]):
+            gaps.append((start, width, below, above))
+    if len(gaps) != 1:
+        raise Cannot(f"{len(gaps)} channels between the walls, one is needed")
+    ((start, width, below, above),) = gaps
+    velocities = (_vector(wall.get("velocity")) for wall in (below, above))
+    return Channel(normal, start, width, side, _viscosity(fluid), *velocities, force)

@@ -1,0 +1,201 @@
+"""A code: a program that speaks the protocol (verification/protocol/README.md), asked what it is, and run."""
+
+import hashlib
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+from ast import Import, ImportFrom, parse, walk
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from verification.protocol.adapter import BAD_INPUT, CANNOT
+from verification.protocol.capability import CAPABILITIES
+from verification.protocol.check import check_run
+from verification.protocol.errors import Beyond, CaseError, SolverError
+from verification.protocol.machine import ROOT
+from verification.protocol.run import Run
+
+FOLDER = Path(__file__).resolve().parent
+SPEAKS = re.compile(r'^if __name__ == "__main__":$', re.MULTILINE)
+OWN = ("reference", "verification.protocol", "verification.codes")  # modules that an adapter's answers may depend on
+PATIENCE = 60.0  # seconds that describe may take, and that a run may take to end when told to
+
+
+@dataclass(frozen=True)
+class Code:
+    """What a program says that it is."""
+
+    name: str
+    program: tuple[str, ...]  # the command line that speaks the protocol
+    version: str
+    capabilities: frozenset[str]
+    missing: str = ""  # what is not installed, and how to get it
+    numerics_version: int | None = None
+    adapter: str = ""  # SHA-256 of the adapter's source, and of the modules of this repository that it imports
+
+
+def all_codes() -> list[str]:
+    """Names of the codes that have an adapter here; runs nothing."""
+    return sorted(file.stem.replace("_", "-") for file in FOLDER.glob("*.py") if SPEAKS.search(file.read_text()))
+
+
+def find_code(name_or_path: str | Path) -> Code:
+    """One of all_codes(), or the path of an executable or of a .py file, which this interpreter runs. Throws CaseError."""
+    program, file = _program(str(name_or_path))
+    said = _described(program)
+    if file.parent == FOLDER and said["name"] != str(name_or_path):
+        raise CaseError(f"{file} describe: name = {said['name']!r}: must be that of its file, {name_or_path}")
+    return Code(said["name"], program, said["version"], frozenset(said["capabilities"]), said["missing"],
+                said.get("numerics_version"), _checksum(file))
+
+
+def _program(name: str) -> tuple[tuple[str, ...], Path]:
+    """The command line, and the file that it runs."""
+    if name in all_codes():
+        module = name.replace("-", "_")
+        return (sys.executable, "-m", f"verification.codes.{module}"), FOLDER / f"{module}.py"
+    file = Path(name).resolve()
+    if not file.is_file():
+        raise CaseError(f"code {name}: unknown; give one of {', '.join(all_codes())}, or the path of an executable or a .py file")
+    if file.suffix == ".py":
+        return (sys.executable, str(file)), file
+    if not os.access(file, os.X_OK):
+        raise CaseError(f"code {name}: cannot be executed; chmod +x, or give a .py file")
+    return (str(file),), file
+
+
+def _environment() -> dict[str, str]:
+    """In which an adapter anywhere can import this repository."""
+    return os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")]))}
+
+
+def _described(program: tuple[str, ...]) -> dict:
+    """What `describe` says, checked. Throws CaseError."""
+    line = f"{' '.join(program)} describe"
+    try:
+        done = subprocess.run([*program, "describe"], env=_environment(), capture_output=True, text=True, timeout=PATIENCE)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise CaseError(f"{line}: {error}") from None
+    if done.returncode != 0:
+        raise CaseError(f"{line}: ended with {done.returncode}: {_last_line(done.stderr)}")
+    try:
+        said = json.loads(done.stdout)
+    except ValueError as error:
+        raise CaseError(f"{line}: no JSON ({error}): {done.stdout[:80]!r}; print one JSON object and nothing else") from None
+    if fault := _fault(said):
+        raise CaseError(f"{line}: {fault}")
+    return said
+
+
+def _fault(said: object) -> str:
+    """What is wrong with a description; empty where nothing is."""
+    if not isinstance(said, dict):
+        return "must print one JSON object"
+    for key, kind in (("name", str), ("version", str), ("capabilities", list), ("missing", str)):
+        if key not in said:
+            return f"{key}: missing; add it"
+        if not isinstance(said[key], kind):
+            return f"{key} = {said[key]!r}: must be a {'list' if kind is list else 'text'}"
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9._-]*", said["name"]):
+        return f"name = {said['name']!r}: must be a short word"
+    unknown = [word for word in said["capabilities"] if word not in CAPABILITIES]
+    if unknown:
+        return f"capabilities: {', '.join(map(str, unknown))}: unknown; known are {', '.join(CAPABILITIES)}"
+    if not said["version"] and not said["missing"]:
+        return "version: empty, though nothing is missing"
+    number = said.get("numerics_version")
+    if number is not None and (not isinstance(number, int) or isinstance(number, bool)):
+        return f"numerics_version = {number!r}: must be an integer"
+    return ""
+
+
+def _imports(file: Path) -> Iterator[Path]:
+    """Files of the modules of OWN that a Python file imports, and of the packages that hold them."""
+    for node in walk(parse(file.read_text())):
+        names = [alias.name for alias in node.names] if isinstance(node, Import) else []
+        if isinstance(node, ImportFrom) and node.module:
+            names = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+        for name in names:
+            if name.startswith(tuple(f"{own}." for own in OWN)):
+                place = ROOT / name.replace(".", "/")
+                yield from (path for path in (place.with_suffix(".py"), place / "__init__.py") if path.is_file())
+
+
+def _checksum(file: Path) -> str:
+    """SHA-256 over an adapter and, where it is Python, all that it imports from OWN, in the order of their names."""
+    found, waiting = set(), [file]
+    while waiting:
+        one = waiting.pop()
+        if one not in found:
+            found.add(one)
+            waiting += _imports(one) if one.suffix == ".py" else []
+    named = {str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else path.name: path for path in found}
+    whole = hashlib.sha256()
+    for name, path in sorted(named.items()):
+        whole.update(name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return whole.hexdigest()
+
+
+def _last_line(text: str) -> str:
+    lines = text.strip().splitlines()
+    return lines[-1] if lines else "it said nothing"
+
+
+def command(code: Code, scene_file: Path, out: Path, cores: int = 1, steps: int | None = None,
+            options: Mapping[str, str] | None = None) -> list[str]:
+    """The line that run_code runs."""
+    line = [*code.program, "run", "--scene", str(scene_file), "--out", str(out), "--cores", str(cores)]
+    line += [] if steps is None else ["--steps", str(steps)]
+    for key, value in (options or {}).items():
+        line += ["--option", f"{key}={value}"]
+    return line
+
+
+def _end(process: subprocess.Popen) -> None:
+    """Ends a program and all that it started."""
+    for how in (signal.SIGTERM, signal.SIGKILL):
+        try:
+            os.killpg(process.pid, how)
+            process.wait(PATIENCE / 10)
+        except ProcessLookupError:
+            return
+        except subprocess.TimeoutExpired:
+            continue
+
+
+def call(line: list[str]) -> tuple[int, str, str]:
+    """Runs a line in a session of its own, which ends when this one is interrupted: (exit status, stdout, stderr)."""
+    process = subprocess.Popen(line, env=_environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                               start_new_session=True)
+    try:
+        stdout, stderr = process.communicate()
+    except BaseException:
+        _end(process)
+        raise
+    return process.returncode, stdout, stderr
+
+
+def run_code(code: Code, scene_file: Path, out: Path, cores: int = 1, steps: int | None = None,
+             options: Mapping[str, str] | None = None) -> Run:
+    """Runs a scene into the folder `out`, which may not hold anything, and checks what was left.
+
+    Throws Beyond where the code cannot do the scene, CaseError where it cannot use its input, SolverError with its last
+    words where it failed, and OutputError where its files are not those of the protocol.
+    """
+    if out.exists() and any(out.iterdir()):
+        raise CaseError(f"--out {out}: holds files; give a folder that is empty")
+    out.mkdir(parents=True, exist_ok=True)
+    line = command(code, scene_file, out, cores, steps, options)
+    status, stdout, stderr = call(line)
+    if status == BAD_INPUT:
+        raise CaseError(_last_line(stderr))
+    if status == CANNOT:
+        raise Beyond(_last_line(stderr))
+    if status != 0:
+        raise SolverError(f"{' '.join(line)}\nended with {status}\n{stdout[-2000:]}{stderr[-4000:]}")
+    check_run(out, code.capabilities)
+    return Run(out)
