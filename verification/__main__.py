@@ -1,4 +1,4 @@
-"""python3 -m verification list | run CASE | report | compare-bits SCENE"""
+"""python3 -m verification list | run CASE | scene CASE | report | compare-bits SCENE"""
 
 import argparse
 import sys
@@ -10,9 +10,11 @@ from verification.bits.compare import compare, explain
 from verification.codes.mappm import Options, run
 from verification.protocol.errors import CaseError, SolverError
 from verification.protocol.machine import ROOT, cores
+from verification.protocol.toml_text import scene_text
 from verification.report.stored import store
 from verification.suite.case import TIERS, Case
-from verification.suite.manifest import all_cases, find_cases
+from verification.suite.manifest import all_cases, find_case, find_cases
+from verification.suite.parameters import overrides_of, scene_of
 from verification.suite.result import run_case, run_with
 
 SKIPPED_CODE = 77  # what ctest takes for skipped
@@ -26,7 +28,7 @@ def list_cases() -> int:
 
 def _run_alone(case: Case, folder: Path, arguments: argparse.Namespace) -> None:
     """A case that judges nothing: runs its scene."""
-    overrides = case.base + tuple(arguments.set)
+    overrides = overrides_of(case, case.base + tuple(arguments.set))
     finished = run(case.file, folder / case.name, Options(ranks=arguments.ranks, overrides=overrides))
     print(f"{case.name}: ran to its end; its manifest names no observable. Series in {finished.folder}/series.csv")
 
@@ -60,6 +62,12 @@ def run_named(arguments: argparse.Namespace) -> int:
     return SKIPPED_CODE if any(result.skipped for result in results) else 0
 
 
+def show_scene(name: str, sets: list[str]) -> int:
+    case = find_case(name)
+    print(scene_text(scene_of(case, (*case.base, *sets))), end="")
+    return 0
+
+
 def compare_bits(scene: Path, ranks: list[int], steps: int | None, every: int | None, build: Path | None) -> int:
     """The serial reference and `ranks` of the parallel solver, these from the folder `build` where it is given."""
     overrides = () if every is None else (f"output.sample={every}",)
@@ -89,12 +97,17 @@ def _parser() -> argparse.ArgumentParser:
     one = commands.add_parser("run", help="run a case and print a line an observable")
     one.add_argument("case", nargs="+", help="name of a folder of cases/, CASE.POINT for one of its points, or the path of a scene")
     one.add_argument("--set", metavar="KEY=VALUE", action="append", default=[],
-                     help="override a key of the scene: then it runs alone, without levels, and the goals alone decide")
+                     help="set a parameter of the case or a key of the scene: then it runs alone, without levels, and the goals "
+                     "alone decide")
     one.add_argument("--tier", choices=TIERS, default="quick", help="full adds the levels that take long")
     one.add_argument("--out", type=Path, help="folder of the runs (default runs), which come to lie in OUT/CASE")
     one.add_argument("--ranks", type=int, default=1, help="ranks of the parallel solver; 0 is the serial reference")
     one.add_argument("--jobs", type=int, default=cores(), metavar="K", help="runs of a case at a time (default: a core each)")
     one.add_argument("--store", action="store_true", help="keep the results in reports/published/full.json, for the report")
+
+    scene = commands.add_parser("scene", help="print the scene of a case or of one of its points, as mappm run takes it")
+    scene.add_argument("case", help="as for run")
+    scene.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="a parameter or a key of the scene")
 
     report = commands.add_parser("report", help="write the report")
     report.add_argument("--tier", choices=TIERS, default="quick")
@@ -117,6 +130,8 @@ def main() -> int:
             return list_cases()
         case "run":
             return run_named(arguments)
+        case "scene":
+            return show_scene(arguments.case, arguments.set)
         case "compare-bits":
             return compare_bits(arguments.scene, arguments.ranks, arguments.steps, arguments.every, arguments.build)
         case "report":

@@ -35,7 +35,7 @@ class Observable:
 
 @dataclass(frozen=True)
 class Level:
-    overrides: tuple[str, ...]
+    overrides: tuple[str, ...]  # KEY=VALUE, of parameters and of the scene; parameters.py turns them into overrides of the scene
     tier: str
 
 
@@ -81,9 +81,12 @@ class Case:
     vary: tuple[Vary, ...] = ()
     beside: tuple[Beside, ...] = ()
     equivalence: Equivalence | None = None
-    base: tuple[str, ...] = ()  # overrides of a point, which all its runs begin with
+    base: tuple[str, ...] = ()  # what a point sets, with which all its runs begin
     live: Live | None = None
-    scene: dict = field(default_factory=dict, repr=False)
+    scene: dict = field(default_factory=dict, repr=False)  # of the case or the point, as it is run
+    plain: dict = field(default_factory=dict, repr=False)  # as the file holds it
+    parameters: dict = field(default_factory=dict, repr=False)  # name: default
+    formulas: dict[str, str] = field(default_factory=dict, repr=False)  # key of the scene, or helper: expression
 
     @property
     def family(self) -> str:

@@ -60,7 +60,6 @@ measure.py beside it holds its observables, and may hold
     live_options(runs) -> list[str]           # more options of the reference code, from the runs by their overrides
 """
 
-import copy
 import math
 import os
 import tomllib
@@ -70,8 +69,8 @@ from pathlib import Path
 from verification.bits.equivalence import read_equivalence
 from verification.protocol.errors import CaseError
 from verification.protocol.machine import ROOT
-from verification.protocol.scene import with_overrides
 from verification.suite.case import REFINED, TIERS, Beside, Case, Level, Live, Observable, Vary
+from verification.suite.parameters import derived, read_parameters, scene_of, split
 
 
 def cases_folder() -> Path:
@@ -186,7 +185,7 @@ def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
         base = _texts(table, "set", at)
         stalls = " ".join(_entry(table, "stalls", str, at, "").split())
         try:
-            scene = with_overrides(copy.deepcopy(case.scene), base)
+            scene = derived(case.plain, case.parameters, case.formulas, base, f"{case.file}: case")
         except (KeyError, IndexError, ValueError) as error:
             raise CaseError(f"{at}.set = {list(base)}: no such key: {error}") from None
         found.append(replace(
@@ -199,6 +198,15 @@ def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
     if len({point.name for point in found}) < len(found):
         raise CaseError(f"{where}.point: two points have the same name; rename one")
     return found or [case]
+
+
+def _check_sets(case: Case, where: str) -> None:
+    """That each name without a dot is that of a parameter, with a value of its kind. Throws CaseError."""
+    named = [(f"level[{i}]", level.overrides) for i, level in enumerate(case.levels)]
+    named += [(f"vary[{i}]", chosen) for i, vary in enumerate(case.vary) for chosen in vary.sets]
+    named += [(f"beside[{i}]", beside.overrides) for i, beside in enumerate(case.beside)]
+    for name, sets in named:
+        split(sets, case.parameters, case.plain, f"{where}.{name}")
 
 
 def _all_of(table: dict, key: str, read, where: str) -> tuple:
@@ -216,7 +224,8 @@ def read_cases(file: Path) -> list[Case]:
         raise CaseError(f"{file}: case: missing; add a table [case]")
     where = f"{file}: case"
     lists = {"observable": _observable, "level": _level, "vary": _vary, "beside": _beside}
-    _only(table, ("purpose", "equations", "tier", "cost", "refined", "stalls", "equivalence", "live", "point", *lists), where)
+    _only(table, ("purpose", "equations", "tier", "cost", "refined", "stalls", "equivalence", "live", "point", "parameters",
+                  "formulas", *lists), where)
     found = {key: _all_of(table, key, read, where) for key, read in lists.items()}
     for i, observable in enumerate(found["observable"]):
         if observable.order and len(found["level"]) < 3:
@@ -225,6 +234,7 @@ def read_cases(file: Path) -> list[Case]:
             raise CaseError(f"{where}.observable[{i}].extrapolated: needs three levels; add [[case.level]]")
         if observable.live and "live" not in table:
             raise CaseError(f"{where}.observable[{i}].live: no reference code is run; add [case.live]")
+    parameters, formulas = read_parameters(table, scene, where)
     equivalence = table.get("equivalence")
     case = Case(
         name=file.parent.name,
@@ -241,8 +251,12 @@ def read_cases(file: Path) -> list[Case]:
         beside=found["beside"],
         equivalence=None if equivalence is None else read_equivalence(equivalence, f"{where}.equivalence"),
         live=_live(table["live"], f"{where}.live") if "live" in table else None,
-        scene=scene,
+        plain=scene,
+        parameters=parameters,
+        formulas=formulas,
     )
+    _check_sets(case, where)
+    case = replace(case, scene=scene_of(case, ()))
     return _points(case, table.get("point", []), where)
 
 

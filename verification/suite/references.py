@@ -15,6 +15,7 @@ from verification.protocol.quantity import Result, read_result
 from verification.protocol.run import Run
 from verification.suite.case import Case, Observable
 from verification.suite.judge import own
+from verification.suite.parameters import overrides_of
 
 USAGE = 2  # exit code of a reference program on input that a user can mend
 
@@ -39,7 +40,7 @@ def live_command(case: Case, tier: str, runs: dict[tuple[str, ...], Run], folder
     measured = options(runs) if options else []
     line = ["python3", "-m", f"reference.{case.live.code}", case.live.problem]
     line += ["--scene", _from_root(case.file), "--out", _from_root(folder)]
-    for override in case.levels_of(tier)[-1].overrides:
+    for override in overrides_of(case, case.levels_of(tier)[-1].overrides):
         line += ["--set", override]
     return [*line, *case.live.options(tier), *measured]
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from verification.codes.mappm import Options, run
 from verification.protocol.run import Run
 from verification.suite.case import Case
+from verification.suite.parameters import overrides_of, scene_of
 
 
 @dataclass(frozen=True)
@@ -31,13 +32,12 @@ class Job:
 
     @property
     def weight(self) -> float:
-        """Cost relative to the scene as declared: particles times steps, where the spacing is overridden."""
-        declared = self.case.scene.get("fluid", {}).get("spacing")
-        for override in reversed(self.overrides):  # the last one counts
-            key, _, value = override.partition("=")
-            if key == "fluid.spacing" and isinstance(declared, (int, float)):
-                return (declared / float(value)) ** (len(self.case.scene["box"]["size"]) + 1)
-        return 1.0
+        """Cost relative to the scene as declared: particles times steps, where the spacing is another."""
+        scenes = self.case.scene, scene_of(self.case, self.overrides)
+        declared, chosen = (scene.get("fluid", {}).get("spacing") for scene in scenes)
+        if not all(isinstance(spacing, (int, float)) for spacing in (declared, chosen)):
+            return 1.0
+        return (declared / chosen) ** (len(self.case.scene["box"]["size"]) + 1)
 
 
 def jobs_of(case: Case, tier: str) -> list[Job]:
@@ -65,7 +65,7 @@ def run_jobs(jobs: list[Job], out: Path, options: Options, workers: int, done: D
 
     def one(job: Job) -> Run:
         nonlocal behind
-        chosen = Options(ranks=options.ranks, overrides=job.overrides + options.overrides)
+        chosen = Options(ranks=options.ranks, overrides=overrides_of(job.case, job.overrides) + options.overrides)
         folder = out / job.case.name / job.folder_name
         shutil.rmtree(folder, ignore_errors=True)  # snapshots of an earlier run would be read as of this one
         finished = run(job.case.file, folder, chosen)
