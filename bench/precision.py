@@ -23,6 +23,7 @@ from verification.protocol.run import Run
 from verification.suite.case import Case
 from verification.suite.judge import measures
 from verification.suite.manifest import find_case
+from verification.suite.parameters import overrides_of
 from verification.suite.references import resolved
 
 SINGLE = 'fluid.precision="single"'
@@ -56,7 +57,7 @@ def of_accuracy(case: Case, levels: int, folder: Path) -> dict[str, float]:
     for place, level in enumerate(case.levels_of("quick")[:levels]):
         values = {}
         for precision, more in (("double", ()), ("single", (SINGLE,))):
-            finished = run(case.file, folder / case.name / f"{place}_{precision}", Options(overrides=level.overrides + more))
+            finished = run(case.file, folder / case.name / f"{place}_{precision}", Options(overrides=overrides_of(case, level.overrides) + more))
             values[precision] = measured(finished).value
         name, scale = f"{case.name}.level_{place}", abs(observable.reference) or 1.0
         figures[f"figure {name}.spacing"] = float(finished.scene["fluid"]["spacing"])

@@ -1,4 +1,4 @@
-"""python3 -m verification list | run CASE | report | compare-bits SCENE | conform ADAPTER"""
+"""The laboratory's command line: cases, codes, the store, the report. See README.md of this folder."""
 
 import argparse
 import sys
@@ -6,74 +6,139 @@ import tempfile
 import textwrap
 from pathlib import Path
 
-from verification.bits.compare import compare, explain
-from verification.codes.code import all_codes
-from verification.codes.conform import conform
-from verification.codes.mappm import Options, run
-from verification.protocol.errors import CaseError, SolverError
+from verification.protocol.errors import Beyond, CaseError, SolverError, StoreError
 from verification.protocol.machine import ROOT, cores
-from verification.report.stored import store
-from verification.suite.case import TIERS, Case
-from verification.suite.manifest import all_cases, find_cases
-from verification.suite.result import run_case, run_with
 
 SKIPPED_CODE = 77  # what ctest takes for skipped
+LABORATORY = ROOT / "runs"
+TIERS = ("quick", "full")
 
 
-def list_cases() -> int:
+def list_cases(for_ctest: bool) -> int:
+    """For people, or a line a test: name, core-seconds, processors, and its labels."""
+    from verification.suite.manifest import all_cases
+
+    if not for_ctest:
+        for case in all_cases():
+            print(f"{case.name:28} {case.tier:6} {case.cost:6g} s  {textwrap.shorten(case.purpose, 90, placeholder=' ...')}")
+        return 0
+    families: dict[str, list] = {}
     for case in all_cases():
-        print(f"{case.name:28} {case.tier:6} {case.cost:6g} s  {textwrap.shorten(case.purpose, 90, placeholder=' ...')}")
+        if case.judged and case.tier == "quick" and (case.observables or case.equivalence):
+            families.setdefault(case.family, []).append(case)
+    for family, points in families.items():
+        processors = 2 if any(case.equivalence for case in points) else 1
+        labels = ["verification", *(["external"] if points[0].live else [])]
+        print(f"{family} {sum(case.cost for case in points):g} {processors} {','.join(labels)}")
     return 0
 
 
-def _run_alone(case: Case, folder: Path, arguments: argparse.Namespace) -> None:
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def _run_alone(laboratory, case, code, arguments: argparse.Namespace) -> None:
     """A case that judges nothing: runs its scene."""
-    overrides = case.base + tuple(arguments.set)
-    finished = run(case.file, folder / case.name, Options(ranks=arguments.ranks, overrides=overrides))
-    print(f"{case.name}: ran to its end; its manifest names no observable. Series in {finished.folder}/series.csv")
+    from verification.store.laboratory import Request
+    from verification.suite.parameters import scene_of
+
+    scene = scene_of(case, case.base + tuple(arguments.set))
+    stored = laboratory.obtain(Request(code, scene, case.name, cores=arguments.ranks), arguments.anew, folder_too=True)
+    print(f"{case.name}: ran to its end; its manifest names no observable. Series in {laboratory.run_folder(stored.key)}/series.csv")
 
 
 def run_named(arguments: argparse.Namespace) -> int:
     """The case, or all its points of the tier. Returns 0, 1 where something does not hold, else 77 where something was skipped."""
-    if arguments.set and arguments.store:
-        raise CaseError("--store keeps a case as it is declared; leave out --set or --store")
-    if arguments.jobs < 1:
-        raise CaseError(f"--jobs {arguments.jobs}: must be at least 1")
+    from verification.codes.code import find_code
+    from verification.store.laboratory import Laboratory
+    from verification.suite.ability import able
+    from verification.suite.manifest import find_cases
+    from verification.suite.result import Way, run_case, run_with
+
+    for name in ("jobs", "ranks"):
+        if getattr(arguments, name) < 1:
+            raise CaseError(f"--{name} {getattr(arguments, name)}: must be at least 1")
     found = []
     for name in arguments.case:
         points = find_cases(name)
         found += [case for case in points if len(points) == 1 or arguments.tier == "full" or case.tier == "quick"]
-    folder = arguments.out or ROOT / "runs"
-    results = []
+    code, laboratory = find_code(arguments.code), Laboratory(arguments.out)
+    if code.missing:
+        print(f"SKIPPED: {code.missing}")
+        return SKIPPED_CODE
+    way = Way(arguments.ranks, arguments.jobs, arguments.anew)
+    holds, skipped = True, False
     for case in found:
-        if not case.judged:
-            _run_alone(case, folder, arguments)
+        before = f"{case.name}: " if len(found) > 1 else ""
+        try:
+            asked = able(case, code)
+            if not case.judged:
+                _run_alone(laboratory, asked, code, arguments)
+                continue
+            if arguments.set:
+                result = run_with(laboratory, asked, tuple(arguments.set), code, way)
+            else:
+                result = run_case(laboratory, asked, arguments.tier, code, way, _say)
+        except Beyond as error:
+            print(f"{before}SKIPPED: {error}")
+            skipped = True
             continue
-        if arguments.set:
-            results.append(run_with(case, folder, tuple(arguments.set), arguments.ranks))
-        else:
-            results.append(run_case(case, arguments.tier, folder, arguments.ranks, arguments.jobs,
-                                    say=lambda text: print(text, file=sys.stderr)))
-        if arguments.store:
-            store(results[-1])
-        print("\n".join(f"{case.name}: {line}" if len(found) > 1 else line for line in results[-1].lines), flush=True)
-    if not all(result.holds for result in results):
-        return 1
-    return SKIPPED_CODE if any(result.skipped for result in results) else 0
+        holds, skipped = holds and result.holds, skipped or bool(result.skipped)
+        print("\n".join(before + line for line in result.lines), flush=True)
+    return 1 if not holds else SKIPPED_CODE if skipped else 0
+
+
+def show_scene(name: str, sets: list[str]) -> int:
+    from verification.protocol.toml_text import scene_text
+    from verification.suite.manifest import find_case
+    from verification.suite.parameters import scene_of
+
+    case = find_case(name)
+    print(scene_text(scene_of(case, (*case.base, *sets))), end="")
+    return 0
 
 
 def compare_bits(scene: Path, ranks: list[int], steps: int | None, every: int | None, build: Path | None) -> int:
     """The serial reference and `ranks` of the parallel solver, these from the folder `build` where it is given."""
+    from verification.bits.compare import compare, explain
+    from verification.codes.mappm import Options
+
     overrides = () if every is None else (f"output.sample={every}",)
-    variants = [
-        Options(ranks=count, steps=steps, overrides=overrides, build=build if count else None) for count in [0, *ranks]
-    ]
+    variants = [Options(ranks=count, steps=steps, overrides=overrides, build=build if count else None) for count in [0, *ranks]]
     with tempfile.TemporaryDirectory() as folder:
         comparison = compare(scene, Path(folder), variants)
         print("\n".join(comparison.lines), flush=True)
         if not comparison.equal:
             print("\n".join(explain(scene, Path(folder), comparison).lines))
     return 0 if comparison.equal else 1
+
+
+def list_codes() -> int:
+    """Each with its version, what it can do, or what is missing."""
+    from verification.codes.code import all_codes, find_code
+
+    for name in all_codes():
+        code = find_code(name)
+        print(f"{code.name:18} {code.version or '-':14} {code.missing or ', '.join(sorted(code.capabilities))}")
+    return 0
+
+
+def use_store(arguments: argparse.Namespace) -> int:
+    from verification.store.commands import export_store, import_store, list_runs, prune, show
+    from verification.store.laboratory import Laboratory
+
+    laboratory = Laboratory(arguments.out)
+    match arguments.what:
+        case "list":
+            return list_runs(laboratory.store, arguments.code)
+        case "show":
+            return show(laboratory.store, arguments.key)
+        case "export":
+            return export_store(laboratory.store, arguments.file)
+        case "import":
+            return import_store(laboratory.store, arguments.file)
+        case "prune":
+            return prune(laboratory, arguments.folders)
 
 
 def _ranks(text: str) -> list[int]:
@@ -83,25 +148,57 @@ def _ranks(text: str) -> list[int]:
     return ranks
 
 
+def _add_out(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--out", type=Path, default=LABORATORY, metavar="DIR", help="folder of the store and of the runs (default runs)")
+
+
+def _add_run(commands) -> None:
+    one = commands.add_parser("run", help="run a case and print a line an observable")
+    one.add_argument("case", nargs="+", help="name of a folder of cases/, CASE.POINT for one of its points, or the path of a scene")
+    one.add_argument("--code", default="mappm", metavar="NAME", help="the code that is judged (default mappm): a name that `codes` lists, or "
+                     "the path of an adapter")
+    one.add_argument("--set", metavar="KEY=VALUE", action="append", default=[],
+                     help="set a parameter of the case or a key of the scene: then it runs alone, without levels, and the goals "
+                     "alone decide")
+    one.add_argument("--tier", choices=TIERS, default="quick", help="full adds the levels that take long")
+    one.add_argument("--ranks", type=int, default=1, help="cores of each run")
+    one.add_argument("--jobs", type=int, default=cores(), metavar="K", help="runs of a case at a time (default: a core each)")
+    one.add_argument("--anew", action="store_true", help="run also what the store has; its digest must come out again")
+    _add_out(one)
+
+
+def _add_store(commands) -> None:
+    store = commands.add_parser("store", help="what the store holds")
+    what = store.add_subparsers(dest="what", required=True)
+    listed = what.add_parser("list", help="a line a run")
+    listed.add_argument("--code", help="of this code alone")
+    what.add_parser("show", help="all about one run").add_argument("key", help="that `list` prints, or its first digits")
+    what.add_parser("export", help="write it as text, JSON lines").add_argument("file", type=Path)
+    what.add_parser("import", help="enter what an export holds and the store does not").add_argument("file", type=Path)
+    pruned = what.add_parser("prune", help="remove runs of other numerics versions than that of the programs")
+    pruned.add_argument("--folders", action="store_true", help="remove the folders of all runs, and keep what the store holds of them")
+    for parser in what.choices.values():
+        _add_out(parser)
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python3 -m verification", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
-    commands.add_parser("list", help="the cases, their tier and their cost in core-seconds")
+    listed = commands.add_parser("list", help="the cases, their tier and their cost in core-seconds")
+    listed.add_argument("--ctest", action="store_true", help="a line a test: name, core-seconds, processors, labels")
+    commands.add_parser("codes", help="the codes that can be judged or be references, and what they can do")
+    _add_run(commands)
 
-    one = commands.add_parser("run", help="run a case and print a line an observable")
-    one.add_argument("case", nargs="+", help="name of a folder of cases/, CASE.POINT for one of its points, or the path of a scene")
-    one.add_argument("--set", metavar="KEY=VALUE", action="append", default=[],
-                     help="override a key of the scene: then it runs alone, without levels, and the goals alone decide")
-    one.add_argument("--tier", choices=TIERS, default="quick", help="full adds the levels that take long")
-    one.add_argument("--out", type=Path, help="folder of the runs (default runs), which come to lie in OUT/CASE")
-    one.add_argument("--ranks", type=int, default=1, help="ranks of the parallel solver; 0 is the serial reference")
-    one.add_argument("--jobs", type=int, default=cores(), metavar="K", help="runs of a case at a time (default: a core each)")
-    one.add_argument("--store", action="store_true", help="keep the results in reports/published/full.json, for the report")
+    scene = commands.add_parser("scene", help="print the scene of a case or of one of its points, as mappm run takes it")
+    scene.add_argument("case", help="as for run")
+    scene.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="a parameter or a key of the scene")
 
-    report = commands.add_parser("report", help="write the report")
+    report = commands.add_parser("report", help="run what is missing of the tier, then draw what the store holds")
     report.add_argument("--tier", choices=TIERS, default="quick")
-    report.add_argument("--out", type=Path, default=ROOT / "reports" / "out")
-    report.add_argument("--publish", action="store_true", help="also copy page, summary and key figures to reports/published")
+    report.add_argument("--page", type=Path, default=ROOT / "reports" / "out", metavar="DIR", help="folder of the page (default reports/out)")
+    report.add_argument("--publish", action="store_true", help="also copy page, summary and the store as text to reports/published")
+    report.add_argument("--only-draw", action="store_true", help="run nothing")
+    _add_out(report)
 
     bits = commands.add_parser("compare-bits", help="compare digests of the serial reference and the parallel solver")
     bits.add_argument("scene", type=Path)
@@ -111,29 +208,42 @@ def _parser() -> argparse.ArgumentParser:
     bits.add_argument("--build", type=Path, metavar="DIR", help="folder whose bin/mappm is compared (default: as for run)")
 
     adapter = commands.add_parser("conform", help="hold the adapter of a code against the protocol")
-    adapter.add_argument("adapter", help=f"{', '.join(all_codes())}, or the path of an executable or of a .py file")
+    adapter.add_argument("adapter", help="a name that `codes` lists, or the path of an executable or of a .py file")
+    _add_store(commands)
     return parser
 
 
-def main() -> int:
-    arguments = _parser().parse_args()
+def _called(arguments: argparse.Namespace) -> int:
     match arguments.command:
         case "list":
-            return list_cases()
+            return list_cases(arguments.ctest)
+        case "codes":
+            return list_codes()
         case "run":
             return run_named(arguments)
+        case "scene":
+            return show_scene(arguments.case, arguments.set)
         case "compare-bits":
             return compare_bits(arguments.scene, arguments.ranks, arguments.steps, arguments.every, arguments.build)
         case "conform":
+            from verification.codes.conform import conform
+
             return conform(arguments.adapter)
+        case "store":
+            return use_store(arguments)
         case "report":
             from verification.report.report import write_report  # drawing libraries load slowly
 
-            return write_report(arguments.tier, arguments.out, arguments.publish)
+            return write_report(arguments)
+
+
+def main() -> int:
+    try:
+        return _called(_parser().parse_args())
+    except (CaseError, SolverError, StoreError, Beyond) as error:
+        print(f"verification: {error}", file=sys.stderr)
+        return 1
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except (CaseError, SolverError) as error:
-        sys.exit(f"verification: {error}")
+    sys.exit(main())

@@ -7,6 +7,7 @@ import pytest
 from verification.codes.mappm import Options, run
 from verification.measures.observables import drag
 from verification.suite.manifest import find_case
+from verification.suite.parameters import overrides_of
 
 FREE = ("body.0.motion=free", "body.0.density=10.0", "force.solid=balance")
 
@@ -14,8 +15,9 @@ FREE = ("body.0.motion=free", "body.0.density=10.0", "force.solid=balance")
 @pytest.mark.parametrize("name", ["cylinder_stokes.phi_0.2", "cylinder_inertia.phi_0.131_re_20"])
 def test_a_free_disc_meets_the_drag_of_a_fixed_one(tmp_path: Path, name: str) -> None:
     case = find_case(name)
-    fixed = drag(run(case.file, tmp_path / "fixed", Options(overrides=case.base)))
-    free = drag(run(case.file, tmp_path / "free", Options(overrides=case.base + FREE)))
+    overrides = overrides_of(case, case.base)
+    fixed = drag(run(case.file, tmp_path / "fixed", Options(overrides=overrides)))
+    free = drag(run(case.file, tmp_path / "free", Options(overrides=overrides + FREE)))
     assert not fixed.objection
     assert not free.objection
     assert abs(free.value / fixed.value - 1) < 0.03

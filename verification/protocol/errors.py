@@ -11,6 +11,8 @@ class SolverError(RuntimeError):
 
 class StoreError(RuntimeError):
     """A store that cannot be read or written: names the file, what is wrong and the fix. Nothing that it held is lost."""
+
+
 class OutputError(SolverError):
     """A run that left files which are not what the protocol asks for: names file, field and fault."""
 

@@ -47,12 +47,30 @@ def fault_of(scene: dict) -> str:
     return next(filter(None, (_quantity_fault(key, value) for key, value in named)), "")
 
 
-def _parsed(text: str):
+# Keys of which a scene gives one: an override of either replaces the other.
+ALTERNATIVES = (("fluid.sound_speed", "fluid.sound_speed_factor"), ("run.step", "run.step_factor"), ("run.steps", "run.duration"))
+
+
+def parsed(text: str):
     """The value of an override, as TOML; a bare word is a text."""
+    text = text.strip()
     try:
         return tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError:
         return text
+
+
+def set_value(scene: dict, key: str, value) -> None:
+    """Sets one key, such as body.0.radius, as with_overrides does."""
+    *way, last = key.split(".")
+    table = scene
+    for part in way:
+        table = table[int(part)] if isinstance(table, list) else table.setdefault(part, {})
+    table[int(last) if isinstance(table, list) else last] = value
+    for pair in ALTERNATIVES:
+        if key in pair:
+            other, dropped = pair[1 - pair.index(key)].split(".")
+            scene.get(other, {}).pop(dropped, None)
 
 
 def with_overrides(scene: dict, overrides: list[str] | tuple[str, ...]) -> dict:
@@ -62,14 +80,7 @@ def with_overrides(scene: dict, overrides: list[str] | tuple[str, ...]) -> dict:
     """
     for override in overrides:
         key, _, value = override.partition("=")
-        *way, last = key.split(".")
-        table = scene
-        for part in way:
-            table = table[int(part)] if isinstance(table, list) else table.setdefault(part, {})
-        if isinstance(table, list):
-            table[int(last)] = _parsed(value)
-        else:
-            table[last] = _parsed(value)
+        set_value(scene, key.strip(), parsed(value))
     return scene
 
 

@@ -16,14 +16,13 @@ from datetime import UTC, datetime
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import tomli_w
-
 from verification.codes.code import Code, run_code
 from verification.protocol.capability import EXACT_LEDGER
 from verification.protocol.errors import StoreError
 from verification.protocol.ledger import defects_of
 from verification.protocol.machine import commit, cores, processor
 from verification.protocol.run import Run
+from verification.protocol.toml_text import scene_text
 from verification.store.keep import kept_of
 from verification.store.key import run_key
 from verification.store.store import Cost, Ledger, Made, Store, StoredRun
@@ -88,7 +87,7 @@ class Laboratory:
                 file = Path(scratch) / name
                 file.parent.mkdir(parents=True, exist_ok=True)
                 file.write_bytes(data)
-            record = stored.record | {"scene": {"text": tomli_w.dumps(stored.scene)}}
+            record = stored.record | {"scene": {"text": scene_text(stored.scene)}}
             (Path(scratch) / "run.json").write_text(json.dumps(record))
             yield Run(Path(scratch))
 
@@ -120,7 +119,7 @@ class Laboratory:
         part.mkdir(parents=True)
         try:
             scene_file = part / "scene.toml"
-            scene_file.write_text(tomli_w.dumps(plain(request.scene)))
+            scene_file.write_text(scene_text(request.scene))
             run_code(request.code, scene_file, part / "out", request.cores, request.steps, dict(request.options))
             shutil.rmtree(folder, ignore_errors=True)
             (part / "out").replace(folder)

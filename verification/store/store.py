@@ -250,6 +250,11 @@ class Store:
         return Found({name: Measured(_number(value), _number(error), words) for name, value, error, words in rows},
                      {kind: json.loads(data) for kind, data in charts})
 
+    def all_found(self, key: str) -> list[tuple[str, str, Measured]]:
+        """(measure, name, value) of every measure, current or not."""
+        rows = self._rows("SELECT measure, name, value, uncertainty, objection FROM measured WHERE key = ? ORDER BY measure, name", key)
+        return [(measure, name, Measured(_number(value), _number(error), words)) for measure, name, value, error, words in rows]
+
     # Equality of bits.
 
     def enter_matrix(self, key: str, label: str, data: dict, made: Made) -> None:

@@ -24,7 +24,8 @@ class Observable:
     extrapolated: float | None = None  # goal of the value extrapolated over the levels
     live: str = ""  # quantity of the reference code that is run for this case
     published: str = ""  # table of reference/published
-    skipped: str = ""  # why there is no reference: a program that is not installed
+    needs: tuple[str, ...] = ()  # capabilities beside those that the scene asks for
+    skipped: str = ""  # why it is not judged: a reference that is not installed, or a code that cannot do it
     unusable: str = ""  # why the reference that there is cannot serve
 
     @property
@@ -35,7 +36,7 @@ class Observable:
 
 @dataclass(frozen=True)
 class Level:
-    overrides: tuple[str, ...]
+    overrides: tuple[str, ...]  # KEY=VALUE, of parameters and of the scene; parameters.py turns them into overrides of the scene
     tier: str
 
 
@@ -81,9 +82,12 @@ class Case:
     vary: tuple[Vary, ...] = ()
     beside: tuple[Beside, ...] = ()
     equivalence: Equivalence | None = None
-    base: tuple[str, ...] = ()  # overrides of a point, which all its runs begin with
+    base: tuple[str, ...] = ()  # what a point sets, with which all its runs begin
     live: Live | None = None
-    scene: dict = field(default_factory=dict, repr=False)
+    scene: dict = field(default_factory=dict, repr=False)  # of the case or the point, as it is run
+    plain: dict = field(default_factory=dict, repr=False)  # as the file holds it
+    parameters: dict = field(default_factory=dict, repr=False)  # name: default
+    formulas: dict[str, str] = field(default_factory=dict, repr=False)  # key of the scene, or helper: expression
 
     @property
     def family(self) -> str:

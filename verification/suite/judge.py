@@ -13,10 +13,11 @@ import numpy as np
 
 from verification.protocol.quantity import COVERAGE, Measured
 from verification.suite.case import Case, Observable, Vary
-from verification.suite.runner import Entry
 from verification.suite.ladder import SAFETY, Convergence, converge, error_order, extrapolated
+from verification.suite.runner import Entry
 
 CORRECT, WRONG, OPEN, SKIPPED = "CORRECT", "WRONG", "NOT ACCEPTED", "SKIPPED"
+NOT_MEASURED = Measured(math.nan, 0.0)  # of an observable that is beyond the code
 CONVERGING, NOT_CONVERGING, STALLED = "CONVERGING", "NOT CONVERGING", "STALLED"
 
 
@@ -170,7 +171,7 @@ def judge(case: Case, tier: str, entries: Entries) -> list[Outcome]:
     outcomes = []
     for observable in case.observables:
         def of(overrides: tuple[str, ...], observable: Observable = observable) -> Measured:
-            return entries[overrides].found.values[observable.name]
+            return entries[overrides].found.values.get(observable.name, NOT_MEASURED)
 
         finished = [entries[level.overrides] for level in case.levels_of(tier)]
         levels = [of(level.overrides) for level in case.levels_of(tier)]

@@ -15,11 +15,11 @@
     cost = 20                       # likewise
     stalls = "why the error stops falling"  # of this point, whose observables then have no band for their order
 
-    [case.live]                     # a reference code, run after the solver: python3 -m reference.CODE PROBLEM --scene ...
+    [case.live]                     # a reference code, run after the code that is judged: an adapter of verification/codes
     code = "openfoam"
     problem = "drag"
-    quick = ["--levels", "16,32"]   # options in that tier
-    full = ["--levels", "16,32,64"]
+    quick = ["levels=16,32"]        # options of it in that tier
+    full = ["levels=16,32,64"]
 
     [[case.observable]]
     name = "drag"                   # a function of measure.py in the folder of the case, or of verification/measures/observables.py
@@ -29,6 +29,7 @@
     # or, in place of reference, uncertainty and source:
     live = "drag"                   # a quantity of the result of [case.live]
     published = "square_array_stokes"  # a table of reference/published, looked up for the scene
+    needs = ["force-on-body"]       # capabilities of a code beside those that the scene asks for; may be left out
     input = 0.0                     # standard uncertainty from the inputs, absolute; 0 if left out
     source = "Sangani and Acrivos 1982, table 1"
     goal = 0.03                     # largest relative error that can count as correct; absolute where the reference is 0
@@ -51,16 +52,9 @@
 
     [case.equivalence]              # see verification/bits/equivalence.py
 
-measure.py beside it holds its observables, and may hold
-
-    curves(run) -> list[Chart]                # to draw of the finest run, see verification/measures/curve.py
-    live_curves(run, folder) -> list[Chart]   # to draw of it and of the reference code, whose files are in the folder
-    family_curves(results) -> list[Chart]     # to draw of two points or more together, see verification/suite/result.py
-    stored_curves(results) -> list[Chart]     # to draw of the stored points of the full tier, which are without their runs
-    live_options(runs) -> list[str]           # more options of the reference code, from the runs by their overrides
+measure.py beside it exports one object MEASURES, see verification/measures/measures.py.
 """
 
-import copy
 import math
 import os
 import tomllib
@@ -68,10 +62,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from verification.bits.equivalence import read_equivalence
+from verification.codes.code import all_codes
+from verification.protocol.capability import CAPABILITIES
 from verification.protocol.errors import CaseError
 from verification.protocol.machine import ROOT
-from verification.protocol.scene import with_overrides
 from verification.suite.case import REFINED, TIERS, Beside, Case, Level, Live, Observable, Vary
+from verification.suite.parameters import derived, read_parameters, scene_of, split
 
 
 def cases_folder() -> Path:
@@ -128,15 +124,24 @@ def _reference(table: dict, where: str) -> dict:
     return {given[0]: _entry(table, given[0], str, where), "reference": math.nan, "uncertainty": math.nan, "source": ""}
 
 
+def _needs(table: dict, where: str) -> tuple[str, ...]:
+    words = _texts(table, "needs", where, [])
+    for word in words:
+        if word not in CAPABILITIES:
+            raise CaseError(f"{where}.needs: {word!r}: unknown; known are {', '.join(CAPABILITIES)}")
+    return words
+
+
 def _observable(table: dict, where: str) -> Observable:
     kinds = {"name": str, "symbol": str, "goal": NUMBER}
-    _only(table, (*kinds, *REFERENCES, "uncertainty", "source", "input", "order", "extrapolated"), where)
+    _only(table, (*kinds, *REFERENCES, "uncertainty", "source", "input", "order", "extrapolated", "needs"), where)
     band = table.get("order")
     if band is not None and not (isinstance(band, list) and len(band) == 2 and band[0] < band[1]):
         raise CaseError(f"{where}.order = {band!r}: write the band as [lowest, highest]")
     observable = Observable(
         **{key: _entry(table, key, kind, where) for key, kind in kinds.items()},
         **_reference(table, where),
+        needs=_needs(table, where),
         input=_entry(table, "input", NUMBER, where, 0.0),
         order=tuple(band) if band else None,
         extrapolated=_entry(table, "extrapolated", NUMBER, where) if "extrapolated" in table else None,
@@ -172,8 +177,11 @@ def _beside(table: dict, where: str) -> Beside:
 
 def _live(table: dict, where: str) -> Live:
     _only(table, ("code", "problem", "quick", "full"), where)
-    codes = tuple(sorted(path.parent.name for path in (ROOT / "reference").glob("*/__main__.py")))
-    return Live(_choice(table, "code", codes, where), _entry(table, "problem", str, where), _texts(table, "quick", where),
+    for key in ("quick", "full"):
+        for text in _texts(table, key, where):
+            if "=" not in text:
+                raise CaseError(f"{where}.{key}: {text!r}: write KEY=VALUE")
+    return Live(_choice(table, "code", tuple(all_codes()), where), _entry(table, "problem", str, where), _texts(table, "quick", where),
                 _texts(table, "full", where))
 
 
@@ -186,7 +194,7 @@ def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
         base = _texts(table, "set", at)
         stalls = " ".join(_entry(table, "stalls", str, at, "").split())
         try:
-            scene = with_overrides(copy.deepcopy(case.scene), base)
+            scene = derived(case.plain, case.parameters, case.formulas, base, f"{case.file}: case")
         except (KeyError, IndexError, ValueError) as error:
             raise CaseError(f"{at}.set = {list(base)}: no such key: {error}") from None
         found.append(replace(
@@ -199,6 +207,15 @@ def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
     if len({point.name for point in found}) < len(found):
         raise CaseError(f"{where}.point: two points have the same name; rename one")
     return found or [case]
+
+
+def _check_sets(case: Case, where: str) -> None:
+    """That each name without a dot is that of a parameter, with a value of its kind. Throws CaseError."""
+    named = [(f"level[{i}]", level.overrides) for i, level in enumerate(case.levels)]
+    named += [(f"vary[{i}]", chosen) for i, vary in enumerate(case.vary) for chosen in vary.sets]
+    named += [(f"beside[{i}]", beside.overrides) for i, beside in enumerate(case.beside)]
+    for name, sets in named:
+        split(sets, case.parameters, case.plain, f"{where}.{name}")
 
 
 def _all_of(table: dict, key: str, read, where: str) -> tuple:
@@ -216,7 +233,8 @@ def read_cases(file: Path) -> list[Case]:
         raise CaseError(f"{file}: case: missing; add a table [case]")
     where = f"{file}: case"
     lists = {"observable": _observable, "level": _level, "vary": _vary, "beside": _beside}
-    _only(table, ("purpose", "equations", "tier", "cost", "refined", "stalls", "equivalence", "live", "point", *lists), where)
+    _only(table, ("purpose", "equations", "tier", "cost", "refined", "stalls", "equivalence", "live", "point", "parameters",
+                  "formulas", *lists), where)
     found = {key: _all_of(table, key, read, where) for key, read in lists.items()}
     for i, observable in enumerate(found["observable"]):
         if observable.order and len(found["level"]) < 3:
@@ -225,6 +243,7 @@ def read_cases(file: Path) -> list[Case]:
             raise CaseError(f"{where}.observable[{i}].extrapolated: needs three levels; add [[case.level]]")
         if observable.live and "live" not in table:
             raise CaseError(f"{where}.observable[{i}].live: no reference code is run; add [case.live]")
+    parameters, formulas = read_parameters(table, scene, where)
     equivalence = table.get("equivalence")
     case = Case(
         name=file.parent.name,
@@ -241,8 +260,12 @@ def read_cases(file: Path) -> list[Case]:
         beside=found["beside"],
         equivalence=None if equivalence is None else read_equivalence(equivalence, f"{where}.equivalence"),
         live=_live(table["live"], f"{where}.live") if "live" in table else None,
-        scene=scene,
+        plain=scene,
+        parameters=parameters,
+        formulas=formulas,
     )
+    _check_sets(case, where)
+    case = replace(case, scene=scene_of(case, ()))
     return _points(case, table.get("point", []), where)
 
 

@@ -90,7 +90,7 @@ def jobs_of(case: Case, tier: str, code: Code, cores: int = 1) -> list[Job]:
 def _names(case: Case, measures: Measures) -> list[str]:
     """Of what is measured of every run of a case. Throws CaseError where an observable does not exist."""
     known = OBSERVABLES | dict(measures.observables)
-    names = list(dict.fromkeys(observable.name for observable in case.observables))
+    names = list(dict.fromkeys(observable.name for observable in case.observables if not observable.skipped))
     for name in names:
         if name not in known:
             raise CaseError(f"{case.file}: case.observable.name = {name!r}: unknown; define it in "

@@ -1,0 +1,23 @@
+"""What of a case a code can do."""
+
+from dataclasses import replace
+
+from verification.codes.code import Code
+from verification.protocol.capability import DIGEST, asked_by, lacking
+from verification.protocol.errors import Beyond
+from verification.suite.case import Case, Observable
+
+
+def _with_reason(observable: Observable, code: Code) -> Observable:
+    words = lacking(code.capabilities, set(observable.needs))
+    return replace(observable, skipped=f"{code.name} lacks {', '.join(words)}") if words else observable
+
+
+def able(case: Case, code: Code) -> Case:
+    """The case as this code is asked it: an observable that is beyond it is marked as skipped, and bits are compared only of a code
+    that has a digest. Throws Beyond where the scene itself is too much."""
+    words = lacking(code.capabilities, asked_by(case.scene))
+    if words:
+        raise Beyond(f"{code.name} lacks {', '.join(words)}")
+    observables = tuple(_with_reason(observable, code) for observable in case.observables)
+    return replace(case, observables=observables, equivalence=case.equivalence if DIGEST in code.capabilities else None)
