@@ -50,6 +50,7 @@ def evaluated(text: str, names: dict, where: str):
             warnings.simplefilter("ignore")  # of nodes that later versions of Python call otherwise
             evaluator = EvalWithCompoundTypes(names=CONSTANTS | names)
         evaluator.functions = FUNCTIONS
+        del evaluator.nodes[ast.Attribute]
         value = evaluator.eval(text, previously_parsed=_tree(text))
     except FAILURES as error:
         raise CaseError(f"{where} = {text!r}: {error}; mend the expression") from None
