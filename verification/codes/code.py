@@ -30,6 +30,7 @@ class Code:
     """What a program says that it is."""
 
     name: str
+    title: str  # for people
     program: tuple[str, ...]  # the command line that speaks the protocol
     version: str
     capabilities: frozenset[str]
@@ -49,7 +50,7 @@ def find_code(name_or_path: str | Path) -> Code:
     said = _described(program)
     if file.parent == FOLDER and said["name"] != str(name_or_path):
         raise CaseError(f"{file} describe: name = {said['name']!r}: must be that of its file, {name_or_path}")
-    return Code(said["name"], program, said["version"], frozenset(said["capabilities"]), said["missing"],
+    return Code(said["name"], said.get("title", said["name"]), program, said["version"], frozenset(said["capabilities"]), said["missing"],
                 said.get("numerics_version"), _checksum(file))
 
 

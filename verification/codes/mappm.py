@@ -138,7 +138,7 @@ class Solver(Adapter):
     """One of the two programs behind the protocol. `allowed` are flags of it that an --option may set; ranks are cores over
     threads."""
 
-    capabilities = frozenset(CAPABILITIES)
+    capabilities, title = frozenset(CAPABILITIES), "MaPPM"
 
     def __init__(self, name: str, allowed: tuple[str, ...], most_cores: int | None = None) -> None:
         self.name, self.allowed, self.most_cores = name, allowed, most_cores

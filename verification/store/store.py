@@ -31,10 +31,11 @@ CREATE TABLE charts (key TEXT, measure TEXT, kind TEXT, data TEXT, PRIMARY KEY (
 CREATE TABLE costs (key TEXT, machine TEXT, cores INTEGER, made TEXT, core_seconds REAL, setup_core_seconds REAL,
                     wall_seconds REAL, peak_memory INTEGER, PRIMARY KEY (key, machine, cores, made));
 CREATE TABLE matrices (key TEXT PRIMARY KEY, label TEXT, data TEXT, made TEXT, machine TEXT, source TEXT);
+CREATE TABLE refusals (key TEXT PRIMARY KEY, label TEXT, code TEXT, reason TEXT);
 CREATE TABLE figures (bench TEXT, settings TEXT, name TEXT, value REAL, unit TEXT, made TEXT, machine TEXT, source TEXT,
                       command TEXT, PRIMARY KEY (bench, settings, name));
 """
-EXPORTED = ("runs", "measured", "costs", "matrices", "figures")  # what git may hold; files and charts stay here
+EXPORTED = ("runs", "measured", "costs", "matrices", "refusals", "figures")  # what git may hold; files and charts stay here
 
 
 @dataclass(frozen=True)
@@ -265,6 +266,17 @@ class Store:
     def matrix(self, key: str) -> tuple[dict, Made] | None:
         rows = self._rows("SELECT data, made, machine, source FROM matrices WHERE key = ?", key)
         return (json.loads(rows[0][0]), Made(*rows[0][1:])) if rows else None
+
+    # What a code cannot do.
+
+    def enter_refusal(self, key: str, label: str, code: str, reason: str) -> None:
+        with self._change() as change:
+            change.execute("INSERT OR REPLACE INTO refusals VALUES (?, ?, ?, ?)", (key, label, code, reason))
+
+    def refusal(self, key: str) -> str:
+        """Why the code did not take this scene; empty where it did, or was not asked."""
+        rows = self._rows("SELECT reason FROM refusals WHERE key = ?", key)
+        return rows[0][0] if rows else ""
 
     # Benchmarks.
 

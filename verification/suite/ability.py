@@ -7,6 +7,8 @@ from verification.protocol.capability import DIGEST, asked_by, lacking
 from verification.protocol.errors import Beyond
 from verification.suite.case import Case, Observable
 
+SOLVERS = ("mappm", "mappm-reference")  # what is varied, and run beside, is a knob of their method
+
 
 def _with_reason(observable: Observable, code: Code) -> Observable:
     words = lacking(code.capabilities, set(observable.needs))
@@ -19,5 +21,6 @@ def able(case: Case, code: Code) -> Case:
     words = lacking(code.capabilities, asked_by(case.scene))
     if words:
         raise Beyond(f"{code.name} lacks {', '.join(words)}")
+    own = {} if code.name in SOLVERS else {"vary": (), "beside": ()}
     observables = tuple(_with_reason(observable, code) for observable in case.observables)
-    return replace(case, observables=observables, equivalence=case.equivalence if DIGEST in code.capabilities else None)
+    return replace(case, observables=observables, equivalence=case.equivalence if DIGEST in code.capabilities else None, **own)

@@ -12,6 +12,7 @@ from verification.store.laboratory import Laboratory, Request
 from verification.suite.case import Case, Observable
 from verification.suite.judge import Entries
 from verification.suite.parameters import scene_of
+from verification.suite.runner import Shelf
 
 
 @dataclass(frozen=True)
@@ -40,15 +41,15 @@ def reference_request(case: Case, tier: str, entries: Entries, code: Code) -> Re
     return Request(code, scene_of(case, case.levels_of(tier)[-1].overrides), f"{case.name}: reference", options=options, field=True)
 
 
-def look_up_reference(laboratory: Laboratory, case: Case, tier: str, entries: Entries, code: Code) -> Reference | None:
+def look_up_reference(laboratory: Shelf, case: Case, tier: str, entries: Entries, code: Code) -> Reference | None:
     """What the store has; None where the code is to be run."""
     if code.missing:
-        return Reference(code.name, missing=code.missing)
+        return Reference(code.title, missing=code.missing)
     stored = laboratory.store.run(reference_request(case, tier, entries, code).key)
     if stored is None:
         return None
     record = stored.record
-    return Reference(stored.code, stored.version, record["command"], record.get("inputs", ""),
+    return Reference(code.title, stored.version, record["command"], record.get("inputs", ""),
                      {name: _quantity(stated) for name, stated in record.get("quantities", {}).items()},
                      record.get("objection", ""), key=stored.key)
 
@@ -62,7 +63,7 @@ def obtain_reference(laboratory: Laboratory, case: Case, tier: str, entries: Ent
     try:
         laboratory.obtain(reference_request(case, tier, entries, code))
     except (SolverError, Beyond) as error:
-        return Reference(code.name, code.version, objection=f"the reference code failed: {str(error).strip().splitlines()[-1]}")
+        return Reference(code.title, code.version, objection=f"the reference code failed: {str(error).strip().splitlines()[-1]}")
     return look_up_reference(laboratory, case, tier, entries, code)
 
 

@@ -21,7 +21,7 @@ from verification.suite.case import Case, Level
 from verification.suite.judge import SKIPPED, Entries, Outcome, beside, judge
 from verification.suite.parameters import scene_of
 from verification.suite.references import Reference, look_up_reference, obtain_reference, resolved
-from verification.suite.runner import OWN, Entry, Job, jobs_of, look_up, perform
+from verification.suite.runner import OWN, Entry, Job, Shelf, jobs_of, look_up, perform
 
 BOTH = "both "  # kind of the charts of a run and of a reference, before the key of that
 FACES_STEPS, FACES_RANKS = 200, 4
@@ -144,7 +144,7 @@ def _bits(kept: dict, made: Made) -> Bits:
     return Bits(Matrix(tuple(Row(**row) for row in kept["rows"])), Conservation(**by_step), made)
 
 
-def look_up_bits(laboratory: Laboratory, case: Case, code: Code) -> Bits | None:
+def look_up_bits(laboratory: Shelf, case: Case, code: Code) -> Bits | None:
     found = laboratory.store.matrix(_bits_key(case, code))
     return _bits(*found) if found else None
 
@@ -177,12 +177,12 @@ def _keep_charts_of_both(laboratory: Laboratory, case: Case, finest: Entry, live
     laboratory.store.enter_found(finest.stored.key, measure_id(case.file.parent), Found(charts=charts))
 
 
-def _charts(laboratory: Laboratory, case: Case, finest: Entry, live: Reference | None) -> tuple[dict, ...]:
+def _charts(laboratory: Shelf, case: Case, finest: Entry, live: Reference | None) -> tuple[dict, ...]:
     kept = laboratory.store.found(finest.stored.key, measure_id(case.file.parent)).charts
     return (*kept.get(OWN, []), *(kept.get(BOTH + live.key, []) if live and live.key else []))
 
 
-def judged(laboratory: Laboratory, case: Case, tier: str, code: Code, entries: Entries, bits: Bits | None = None,
+def judged(laboratory: Shelf, case: Case, tier: str, code: Code, entries: Entries, bits: Bits | None = None,
            live: Reference | None = None) -> CaseResult:
     known = resolved(case, live)
     outcomes, others = tuple(judge(known, tier, entries)), tuple(beside(known, entries))
@@ -190,7 +190,7 @@ def judged(laboratory: Laboratory, case: Case, tier: str, code: Code, entries: E
     return CaseResult(known, code, tier, entries, outcomes, others, exactness(entries), bits, live, charts)
 
 
-def collect(laboratory: Laboratory, case: Case, tier: str, code: Code) -> CaseResult | None:
+def collect(laboratory: Shelf, case: Case, tier: str, code: Code) -> CaseResult | None:
     """From the store alone; None where something of it is missing."""
     entries = {}
     for job in jobs_of(case, tier, code):
@@ -214,6 +214,15 @@ class Way:
     anew: bool = False  # also what the store has
 
 
+def finish(laboratory: Laboratory, case: Case, tier: str, code: Code) -> tuple[Entries, Reference | None]:
+    """When the runs of a case are there: what was measured, and what the reference code says, which is run where that is missing."""
+    entries = {job.overrides: look_up(laboratory, job) for job in jobs_of(case, tier, code)}
+    live = obtain_reference(laboratory, case, tier, entries) if case.live else None
+    if live is not None and case.observables:
+        _keep_charts_of_both(laboratory, case, entries[case.levels_of(tier)[-1].overrides], live)
+    return entries, live
+
+
 def run_case(laboratory: Laboratory, case: Case, tier: str, code: Code, way: Way, say: Say) -> CaseResult:
     """All that the manifest asks for. `say` is told of every run that ends. Throws SolverError, CaseError, Beyond, StoreError."""
     started = time.monotonic()
@@ -225,10 +234,7 @@ def run_case(laboratory: Laboratory, case: Case, tier: str, code: Code, way: Way
     jobs = jobs_of(case, tier, code, way.cores)
     perform(laboratory, jobs, way.workers, told, way.anew)
     bits = obtain_bits(laboratory, case, code, say, way.anew) if case.equivalence is not None else None
-    entries = {job.overrides: look_up(laboratory, job) for job in jobs}
-    live = obtain_reference(laboratory, case, tier, entries) if case.live else None
-    if live is not None and case.observables:
-        _keep_charts_of_both(laboratory, case, entries[case.levels_of(tier)[-1].overrides], live)
+    entries, live = finish(laboratory, case, tier, code)
     return judged(laboratory, case, tier, code, entries, bits, live)
 
 

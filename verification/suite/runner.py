@@ -5,6 +5,7 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Protocol
 
 from verification.codes.code import Code
 from verification.measures.curve import kept_chart
@@ -15,11 +16,17 @@ from verification.protocol.errors import CaseError
 from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
 from verification.store.laboratory import Laboratory, Request
-from verification.store.store import Found, StoredRun
+from verification.store.store import Found, Store, StoredRun
 from verification.suite.case import Case
 from verification.suite.parameters import scene_of
 
 OWN, FIGURE = "own", "figure "  # kind of the charts of a run; before the names of figures that are no observables
+
+
+class Shelf(Protocol):
+    """What has a store: a laboratory, or what was published."""
+
+    store: Store
 
 
 @dataclass(frozen=True)
@@ -123,7 +130,7 @@ def measured(case: Case, run: Run, code: Code, with_charts: bool) -> Found:
     return Found(values, charts)
 
 
-def look_up(laboratory: Laboratory, job: Job) -> Entry | None:
+def look_up(laboratory: Shelf, job: Job) -> Entry | None:
     """What the store has of a job; None where the run or something measured of it is missing."""
     stored = laboratory.store.run(job.request.key)
     if stored is None:

@@ -1,0 +1,83 @@
+"""Runs what is missing of a tier."""
+
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+from verification.codes.code import Code, find_code
+from verification.protocol.machine import cores
+from verification.store.laboratory import Laboratory, Request
+from verification.suite.case import Case
+from verification.suite.manifest import all_cases, find_case
+from verification.suite.parameters import scene_of
+from verification.suite.progress import Progress
+from verification.suite.result import finish, obtain_bits
+from verification.suite.runner import Job, jobs_of, perform
+from verification.suite.table import make, missing_of_table
+
+SHOWN = "gas_solid_small"  # the scene of the long run that the report shows
+SHOWN_STEPS = {"quick": 4_000, "full": 30_000}
+SHOWN_RANKS = 2
+LEFT_OUT = ("gas_solid_paper",)  # an experiment of its own
+
+Say = Callable[..., None]
+
+
+def subject() -> Code:
+    """The code that the report is about."""
+    return find_code("mappm")
+
+
+def cases_of(tier: str) -> list[Case]:
+    return [case for case in all_cases() if case.judged and case.family not in LEFT_OUT and (tier == "full" or case.tier == "quick")]
+
+
+def shown_request(tier: str) -> Request:
+    """The long run: on any number of cores it is the same."""
+    case = find_case(SHOWN)
+    return Request(subject(), scene_of(case, case.base), f"{SHOWN}: shown", SHOWN_STEPS[tier], cores=SHOWN_RANKS, field=True)
+
+
+def _with_time(say: Say, words: Callable[[Job], str]) -> Callable[[Job, float], None]:
+    started = time.monotonic()
+
+    def told(job: Job, share: float) -> None:
+        say(words(job), (time.monotonic() - started) * (1 - share) / share)
+
+    return told
+
+
+def _references(laboratory: Laboratory, cases: list[Case], tier: str, code: Code, say: Say) -> None:
+    """Several at a time."""
+    with ThreadPoolExecutor(cores()) as pool:
+        futures = {case.name: pool.submit(finish, laboratory, case, tier, code) for case in cases}
+        for done, (name, future) in enumerate(futures.items(), start=1):
+            future.result()
+            say(f"{done} of {len(futures)}, last {name}")
+
+
+def _table(laboratory: Laboratory, say: Say) -> None:
+    jobs = missing_of_table(laboratory)
+    with ThreadPoolExecutor(cores()) as pool:
+        for done, (job, future) in enumerate([(job, pool.submit(make, laboratory, job)) for job in jobs], start=1):
+            future.result()
+            say(f"{done} of {len(jobs)}, last {job.code.name} on {job.case.name}")
+
+
+def make_tier(laboratory: Laboratory, tier: str) -> None:
+    """Throws SolverError, CaseError and StoreError. What was made before stays."""
+    cases, code = cases_of(tier), subject()
+    with_bits = [case for case in cases if case.equivalence is not None]
+    progress = Progress(stages=4 + len(with_bits))
+    jobs = [job for case in cases for job in jobs_of(case, tier, code)]
+    with progress.stage(f"{len(jobs)} runs of {len(cases)} cases") as say:
+        perform(laboratory, jobs, cores(), _with_time(say, lambda job: f"last {job.case.name}"))
+    with progress.stage("reference codes") as say:
+        _references(laboratory, [case for case in cases if case.live], tier, code, say)
+    for case in with_bits:
+        with progress.stage(f"bits of {case.name}") as say:
+            obtain_bits(laboratory, case, code, say)
+    with progress.stage(f"{SHOWN}, {SHOWN_STEPS[tier]} steps on {SHOWN_RANKS} processes"):
+        laboratory.obtain(shown_request(tier))
+    with progress.stage("other codes on the same cases") as say:
+        _table(laboratory, say)
