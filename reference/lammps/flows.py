@@ -17,6 +17,7 @@ from reference.scripted import Finished
 DATA, DUMP = "particles.data", "dump.txt"
 SKIN = 0.3  # of the lists of neighbours, in spacings
 COLUMNS = "x y z vx vy vz"
+LOWEST = 0.9  # rest density over that of the lattice
 HEADER = 9  # lines of a frame before its particles
 
 
@@ -38,8 +39,8 @@ def write_data(file: Path, scene: ParticleScene, particles: Particles, density: 
     file.write_text("\n".join(lines) + "\n")
 
 
-def script_of(scene: ParticleScene, particles: Particles, plan: Plan, density: float) -> str:
-    """Reads DATA, writes DUMP."""
+def script_of(scene: ParticleScene, particles: Particles, plan: Plan, density: float, rest: float) -> str:
+    """Reads DATA, writes DUMP; `rest` is the density at which the pressure is 0."""
     force = " ".join(repr(float(value)) for value in _in_space(scene.mass * scene.gravity[None, :])[0])
     driven = f"fix force fluid addforce {force}" if scene.gravity.any() else ""
     held = "" if particles.fluid.all() else "fix hold wall setforce 0.0 0.0 0.0"
@@ -56,7 +57,7 @@ neighbor {SKIN * scene.spacing!r} bin
 neigh_modify delay 0 every 1 check yes
 pair_style hybrid/overlay sph/rhosum 1 sph/taitwater/morris
 pair_coeff * * sph/rhosum {scene.reach!r}
-pair_coeff * * sph/taitwater/morris {density!r} {scene.sound_speed!r} {scene.viscosity!r} {scene.reach!r}
+pair_coeff * * sph/taitwater/morris {rest!r} {scene.sound_speed!r} {scene.viscosity!r} {scene.reach!r}
 {driven}
 {held}
 fix motion all sph
@@ -79,8 +80,14 @@ def frames_of(dump: Path, count: int, dimension: int, step: float) -> Iterator[t
             yield int(header[1]) * step, rows[:, :dimension], rows[:, 3 : 3 + dimension]
 
 
-def run(scene: ParticleScene, particles: Particles, plan: Plan, folder: Path, ranks: int) -> Finished:
+def rest_density(scene: ParticleScene, density: float, background: float) -> float:
+    """At which Tait's law gives 0 where the lattice, of that density, has the pressure `background`."""
+    return density * max(1 - background / (scene.density * scene.sound_speed**2), LOWEST)
+
+
+def run(scene: ParticleScene, particles: Particles, plan: Plan, background: float, folder: Path, ranks: int) -> Finished:
     """Leaves DUMP in the folder. Throws Failed."""
     density = lattice_density(scene.cell, scene.reach, scene.mass)
+    rest = rest_density(scene, density, background)
     write_data(folder / DATA, scene, particles, density)
-    return run_script(script_of(scene, particles, plan, density), folder, ranks)
+    return run_script(script_of(scene, particles, plan, density, rest), folder, ranks)
