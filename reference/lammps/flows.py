@@ -4,7 +4,6 @@ The styles are those of sph.py: the density summed at every step under `sph/tait
 velocity of their wall, at rest or along itself: forces on them are set to zero, so that `fix sph` moves them with it.
 """
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +17,6 @@ DATA, DUMP = "particles.data", "dump.txt"
 SKIN = 0.3  # of the lists of neighbours, in spacings
 COLUMNS = "x y z vx vy vz"
 LOWEST = 0.9  # rest density over that of the lattice
-HEADER = 9  # lines of a frame before its particles
 
 
 def _in_space(values: np.ndarray) -> np.ndarray:
@@ -68,16 +66,6 @@ dump_modify frames sort id format line "%.9g %.9g %.9g %.9g %.9g %.9g"
 thermo {plan.steps}
 run {plan.steps}
 """
-
-
-def frames_of(dump: Path, count: int, dimension: int, step: float) -> Iterator[tuple[float, np.ndarray, np.ndarray]]:
-    """(time, points (n, D), velocity (n, D)) of every frame."""
-    with dump.open() as file:
-        while header := [file.readline() for _ in range(HEADER)]:
-            if not header[-1]:
-                return
-            rows = np.loadtxt(file, max_rows=count, ndmin=2)
-            yield int(header[1]) * step, rows[:, :dimension], rows[:, 3 : 3 + dimension]
 
 
 def rest_density(scene: ParticleScene, density: float, background: float) -> float:

@@ -19,6 +19,7 @@ from reference.lammps import flows
 from reference.lammps.program import MISSING, SCRIPT, installed, version
 from reference.particles import fastest_of, largest_step, leave_frames, particles_of, plan_of, read_particle_scene
 from reference.scripted import Failed as FailedScript
+from reference.scripted import frames_of
 from verification.protocol.adapter import Adapter, BadInput, Failed, Left, Task, main
 from verification.protocol.capability import FLUID, SPACE, WALLS
 from verification.protocol.quantity import checksum_of
@@ -58,7 +59,7 @@ class Lammps(Adapter):
                 flows.run(scene, particles, plan, background, folder, task.cores)
             except FailedScript as error:
                 raise Failed(f"LAMMPS failed: {error}") from None
-            frames = flows.frames_of(folder / flows.DUMP, len(particles.points), scene.dimension, plan.step)
+            frames = frames_of(folder / flows.DUMP, len(particles.points), scene.dimension, plan.step)
             leave_frames(task.out, scene, particles, frames)
             checksum = checksum_of([folder / SCRIPT, folder / flows.DATA], folder)
         return Left(more={"inputs": checksum, "step": plan.step, "steps": plan.steps})
