@@ -48,6 +48,14 @@ def _run_alone(laboratory, case, code, arguments: argparse.Namespace) -> None:
 
 
 def run_named(arguments: argparse.Namespace) -> int:
+    """In the laboratory named, or in one that starts empty and is removed."""
+    if not arguments.scratch:
+        return _run_in(arguments.out, arguments)
+    with tempfile.TemporaryDirectory() as folder:
+        return _run_in(Path(folder), arguments)
+
+
+def _run_in(folder: Path, arguments: argparse.Namespace) -> int:
     """The case, or all its points of the tier. Returns 0, 1 where something does not hold, else 77 where something was skipped."""
     from verification.codes.code import find_code
     from verification.store.laboratory import Laboratory
@@ -62,7 +70,7 @@ def run_named(arguments: argparse.Namespace) -> int:
     for name in arguments.case:
         points = find_cases(name)
         found += [case for case in points if len(points) == 1 or arguments.tier == "full" or case.tier == "quick"]
-    code, laboratory = find_code(arguments.code), Laboratory(arguments.out)
+    code, laboratory = find_code(arguments.code), Laboratory(folder)
     if code.missing:
         print(f"SKIPPED: {code.missing}")
         return SKIPPED_CODE
@@ -178,6 +186,7 @@ def _add_run(commands) -> None:
     one.add_argument("--ranks", type=int, default=1, help="cores of each run")
     one.add_argument("--jobs", type=int, default=cores(), metavar="K", help="runs of a case at a time (default: a core each)")
     one.add_argument("--anew", action="store_true", help="run also what the store has; its digest must come out again")
+    one.add_argument("--scratch", action="store_true", help="in a store of its own, which starts empty and is removed")
     _add_out(one)
 
 
