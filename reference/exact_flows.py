@@ -138,7 +138,8 @@ def _decaying(scene: dict) -> Decaying:
     if axes[0] == axes[1]:
         raise Cannot("a wave along its own gradient is sound, which has no exact solution here")
     eigenvalue = {"wave": k[axes[1]] ** 2, "vortices": k @ k, "abc": k[0] ** 2}[kind]
-    return Decaying(kind, in_si(table["amplitude"]), k, float(_viscosity(fluid) * eigenvalue), *axes, _vector(fluid.get("velocity")))
+    rate = float(_viscosity(fluid) * eigenvalue)
+    return Decaying(kind, in_si(table["amplitude"]), k, rate, *axes, _vector(fluid.get("velocity")))
 
 
 def _channel(scene: dict) -> Channel:

@@ -3,10 +3,15 @@
 import os
 import re
 import resource
+import shutil
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+
+import numpy as np
+
+HEADER = 9  # lines of a frame of a dump before its particles
 
 
 @dataclass(frozen=True)
@@ -18,6 +23,14 @@ class Finished:
 
 class Failed(RuntimeError):
     """The program ended with an error: its own message."""
+
+
+def package_version(name: str) -> str:
+    """Of a package of Debian; empty where it is not installed as one."""
+    if not shutil.which("dpkg-query"):
+        return ""
+    done = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", name], capture_output=True, text=True)
+    return done.stdout if done.returncode == 0 else ""
 
 
 def _children_seconds() -> float:
@@ -36,3 +49,13 @@ def run_in(folder: Path, command: list[str], version: str, environment: Mapping[
         raise Failed(error.group(0) if error else f"exit status {done.returncode}: {done.stdout[-300:]}")
     found = re.search(version, done.stdout)
     return Finished(found.group(1) if found else "", done.stdout, seconds)
+
+
+def frames_of(dump: Path, count: int, dimension: int, step: float) -> Iterator[tuple[float, np.ndarray, np.ndarray]]:
+    """(time, points (n, D), velocity (n, D)) of every frame of a dump whose columns are x y z vx vy vz."""
+    with dump.open() as file:
+        while header := [file.readline() for _ in range(HEADER)]:
+            if not header[-1]:
+                return
+            rows = np.loadtxt(file, max_rows=count, ndmin=2)
+            yield int(header[1]) * step, rows[:, :dimension], rows[:, 3 : 3 + dimension]

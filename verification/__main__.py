@@ -141,6 +141,20 @@ def use_store(arguments: argparse.Namespace) -> int:
             return prune(laboratory, arguments.folders)
 
 
+def report(arguments: argparse.Namespace) -> int:
+    """Runs what is missing, then draws."""
+    from verification.store.laboratory import Laboratory
+    from verification.suite.tier import make_tier
+
+    laboratory = Laboratory(arguments.out)
+    if not arguments.only_draw:
+        make_tier(laboratory, arguments.tier)
+    print("report: drawing", flush=True)
+    from verification.report.report import draw_report  # drawing libraries load slowly
+
+    return draw_report(laboratory, arguments.tier, arguments.page, arguments.publish)
+
+
 def _ranks(text: str) -> list[int]:
     ranks = [int(word) for word in text.split(",")]
     if min(ranks) < 1 or len(set(ranks)) != len(ranks):
@@ -232,9 +246,7 @@ def _called(arguments: argparse.Namespace) -> int:
         case "store":
             return use_store(arguments)
         case "report":
-            from verification.report.report import write_report  # drawing libraries load slowly
-
-            return write_report(arguments)
+            return report(arguments)
 
 
 def main() -> int:

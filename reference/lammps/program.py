@@ -19,6 +19,12 @@ def installed() -> bool:
     return program() is not None
 
 
+def version() -> str:
+    """Of the package, such as 2025.7.22.4.0; empty where it is not installed."""
+    found = next(PEERS.glob("lib/python3*/site-packages/lammps-*.dist-info"), None)
+    return found.name.removeprefix("lammps-").removesuffix(".dist-info") if found else ""
+
+
 def missing(command: str) -> Result:
     return Result(CODE, command=command, missing=MISSING)
 

@@ -11,6 +11,7 @@ set-up late, so a run of no steps comes first: else the first step is wrong near
 
 import itertools
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 from reference.lammps.program import CODE, SCRIPT, run_script
@@ -24,13 +25,19 @@ SKINS = (0.3, 0.6)  # in spacings
 OBJECTION = "its SPH styles give other figures on two ranks than on one, or with another skin of the neighbour lists"
 
 
+def lattice_density(cell: Sequence[float], reach: float, mass: float) -> float:
+    """The sum over a lattice of cells (D) of one particle each."""
+    dimension = len(cell)
+    norm = 5 / math.pi if dimension == 2 else 3465 / (512 * math.pi)
+    nodes = (range(-math.ceil(reach / side), math.ceil(reach / side) + 1) for side in cell)
+    total = sum(max(0.0, 1 - sum((n * side) ** 2 for n, side in zip(node, cell, strict=True)) / reach**2) ** 4
+                for node in itertools.product(*nodes))
+    return float(mass * norm / reach**dimension * total)
+
+
 def rest_density(fluid: Fluid) -> float:
     """The sum over the lattice of masses 1."""
-    nodes = range(-math.ceil(fluid.reach), math.ceil(fluid.reach) + 1)
-    norm = 5 / math.pi if fluid.dimension == 2 else 3465 / (512 * math.pi)
-    return norm / fluid.reach**fluid.dimension * sum(
-        max(0.0, 1 - sum(n * n for n in node) / fluid.reach**2) ** 4
-        for node in itertools.product(nodes, repeat=fluid.dimension))
+    return lattice_density([1.0] * fluid.dimension, fluid.reach, 1.0)
 
 
 def fluid_script(fluid: Fluid, skin: float) -> str:

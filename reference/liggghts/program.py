@@ -3,7 +3,7 @@
 import shutil
 from pathlib import Path
 
-from reference.scripted import Failed, Finished, run_in
+from reference.scripted import Failed, Finished, package_version, run_in
 from verification.protocol.quantity import Result
 
 __all__ = ["Failed", "Finished", "installed", "missing", "run_script"]
@@ -16,6 +16,11 @@ MISSING = "the program liggghts is not on PATH; apt-get install liggghts"
 
 def installed() -> bool:
     return shutil.which(PROGRAM) is not None
+
+
+def version() -> str:
+    """Of Debian's package; empty where the program came otherwise."""
+    return package_version("liggghts")
 
 
 def missing(command: str) -> Result:

@@ -167,7 +167,8 @@ def checks(name_or_path: str | Path) -> Iterator[Check]:
     except CaseError as error:
         yield Check("describe is valid", False, str(error))
         return
-    yield Check("describe is valid", True, f"{code.name} {code.version}, {', '.join(w for w in CAPABILITIES if w in code.capabilities)}")
+    words = ", ".join(word for word in CAPABILITIES if word in code.capabilities)
+    yield Check("describe is valid", True, f"{code.name} {code.version}: {words}")
     if code.missing:
         yield Check("it is installed", False, code.missing)
         return

@@ -1,4 +1,7 @@
-"""A code that is right: writes the exact solution of a scene, where there is one, as a run. `--option snapshots=N`, by default 40."""
+"""A code that is right: writes the exact solution of a scene, where there is one, as a run.
+
+`--option snapshots=N` leaves that many after the first, by default 40.
+"""
 
 import sys
 from collections.abc import Iterator

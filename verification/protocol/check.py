@@ -123,7 +123,8 @@ def _columns(file: Path) -> dict[str, list[str]]:
     """Cells of a CSV file by the name of their column, without its unit."""
     try:
         with file.open(newline="", encoding="utf-8") as opened:
-            rows = list(csv.reader(opened))
+            text = opened.read()
+        rows = list(csv.reader(text.splitlines()))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         _wrong(file, "", f"cannot be read: {error}")
     if not rows:
@@ -136,6 +137,8 @@ def _columns(file: Path) -> dict[str, list[str]]:
             _wrong(file, "header", f"{name} twice")
     if len(rows) < 2:
         _wrong(file, "", "holds no row")
+    if not text.endswith("\n"):
+        _wrong(file, f"line {len(rows)}", "no line break at its end; perhaps truncated")
     for number, row in enumerate(rows[1:], start=2):
         if len(row) != len(names):
             _wrong(file, f"line {number}", f"{len(row)} cells under {len(names)} columns; perhaps truncated")
@@ -237,9 +240,9 @@ def _array(file: Path, root: h5py.Group, name: str, shape: tuple[int | None, ...
     if not isinstance(root.get(name), h5py.Dataset):
         _wrong(file, name, "missing")
     values = root[name][()]
-    fits = np.ndim(values) == len(shape) and all(wanted in (None, has) for wanted, has in zip(shape, np.shape(values), strict=True))
-    if not fits:
-        _wrong(file, name, f"shape {np.shape(values)}: must be {tuple('n' if side is None else side for side in shape)}")
+    has = np.shape(values)
+    if len(has) != len(shape) or any(wanted not in (None, side) for wanted, side in zip(shape, has, strict=True)):
+        _wrong(file, name, f"shape {has}: must be {tuple('n' if side is None else side for side in shape)}")
     if values.dtype.kind not in "iuf":
         _wrong(file, name, f"{values.dtype}: must be numbers")
     if not np.all(np.isfinite(values)):

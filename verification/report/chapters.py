@@ -90,7 +90,7 @@ class Chapter:
 
     @property
     def version(self) -> str:
-        live = self.results[0].live.result
+        live = self.results[0].live
         return live.version or live.missing or live.objection
 
     @property
@@ -121,5 +121,5 @@ def chapters_of(results: list[CaseResult], figures: dict[str, CaseFigures], fami
         members = found[code]
         named = {result.case.family for result in members}
         charts = tuple(chart for family in families if family.name in named for chart in family.charts)
-        chapters.append(Chapter(members[0].live.result.code, tuple(members), _pictures(members, figures), charts))
+        chapters.append(Chapter(members[0].live.code, tuple(members), _pictures(members, figures), charts))
     return chapters

@@ -3,13 +3,14 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from verification.measures.curve import Chart
+from verification.measures.curve import Chart, chart_of
+from verification.measures.measures import measures_in
 from verification.protocol.run import Run
 from verification.report import charts
 from verification.report.pictures import velocity_field
 from verification.report.side_by_side import compare_fields
-from verification.report.stored import stored_families
-from verification.suite.judge import SKIPPED, Outcome, own
+from verification.store.laboratory import Laboratory
+from verification.suite.judge import SKIPPED, Outcome
 from verification.suite.result import CaseResult
 
 
@@ -27,30 +28,31 @@ def _drawn(found: list[Chart], name: str, out: Path) -> list[Path]:
     return files
 
 
-def _live_figures(result: CaseResult, out: Path) -> tuple[Path | None, list[Path]]:
-    """(the field of both codes, charts of both codes) where the case has a reference code that ran."""
-    case, live = result.case, result.live
-    if live is None or not live.result.quantities or not result.outcomes:
-        return None, []
-    beside = None
-    if live.result.field and result.finest.snapshots():
-        beside = out / f"{case.name}_beside.png"
-        compare_fields(result.finest, live, f"{case.name}, {live.result.code} {live.result.version}", beside)
-    curves = own(case, "live_curves")
-    return beside, _drawn(curves(result.finest, live.folder) if curves else [], f"{case.name}_live", out)
+def _fields(laboratory: Laboratory, result: CaseResult, out: Path) -> tuple[Path | None, Path | None]:
+    """(the field of the finest run, that of both codes), one of them at most, where the laboratory kept it."""
+    case, live, finest = result.case, result.live, result.finest
+    if laboratory.store.run(finest.stored.key) is None:
+        return None, None  # published elsewhere, without fields
+    with laboratory.kept(finest.stored.key) as run:
+        if not run.snapshots() or not case.scene["fluid"].get("particles", True):
+            return None, None
+        if live is not None and live.key and laboratory.store.run(live.key) is not None:
+            with laboratory.kept(live.key) as other:
+                if other.snapshots():
+                    beside = out / f"{case.name}_beside.png"
+                    compare_fields(run, other, live.code, f"{case.name}, {live.code} {live.version}", beside)
+                    return None, beside
+        field = out / f"{case.name}_field.png"
+        velocity_field(run, field)
+        return field, None
 
 
-def case_figures(result: CaseResult, out: Path) -> CaseFigures:
+def case_figures(laboratory: Laboratory, result: CaseResult, out: Path) -> CaseFigures:
     case = result.case
     if not result.outcomes:
         return CaseFigures(None, ())
-    finest, field = result.finest, None
-    beside, live_charts = _live_figures(result, out)
-    if beside is None and finest.snapshots() and finest.record["particles"] and case.scene["fluid"].get("particles", True):
-        field = out / f"{case.name}_field.png"
-        velocity_field(finest, field)
-    curves = own(case, "curves")
-    drawn = _drawn(curves(finest) if curves else [], f"{case.name}_curve", out) + live_charts
+    field, beside = _fields(laboratory, result, out)
+    drawn = _drawn([chart_of(kept) for kept in result.charts], f"{case.name}_curve", out)
     leveled = {outcome.observable.name: outcome for outcome in reversed(result.outcomes) if len(outcome.levels) > 1}
     for k, outcome in enumerate(leveled.values()):  # once where there are two references for one measure
         if outcome.verdict != SKIPPED:
@@ -63,15 +65,11 @@ def case_figures(result: CaseResult, out: Path) -> CaseFigures:
     return CaseFigures(field, tuple(drawn), beside)
 
 
-def family_figures(results: list[CaseResult], out: Path, kind: str = "family") -> tuple[Path, ...]:
-    """What measure.py draws of several points together: by family_curves, or of kind "stored" by stored_curves."""
-    curves = own(results[0].case, f"{kind}_curves") if len(results) > 1 else None
-    return tuple(_drawn(curves(results) if curves else [], f"{results[0].case.family}_{kind}", out))
-
-
-def stored_figures(entries: dict[str, dict], out: Path) -> list[Path]:
-    """Of all families in the file of stored results."""
-    return [file for results in stored_families(entries) for file in family_figures(results, out, "stored")]
+def family_figures(results: list[CaseResult], out: Path) -> tuple[Path, ...]:
+    """What measure.py draws of several points together."""
+    draw = measures_in(results[0].case.file.parent).charts_of_family
+    points = [result.point for result in results if result.outcomes]
+    return tuple(_drawn(draw(points) if draw and len(points) > 1 else [], f"{results[0].case.family}_family", out))
 
 
 def suite_figures(rows: list[tuple[str, Outcome]], history: list[dict], out: Path) -> dict[str, Path]:

@@ -8,16 +8,16 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from verification.protocol.machine import ROOT, processor
-from verification.protocol.run import Run
 from verification.suite.manifest import cases_folder
 
 PACKAGES = ("numpy", "h5py", "pyvista", "vtk", "matplotlib", "Jinja2")
 
 
-def provenance(run: Run) -> dict[str, str]:
-    record = run.record
+def provenance(record: dict) -> dict[str, str]:
+    """Of the programs that made a run, from its record, and of what draws."""
     return {
         "commit": record["commit"],
+        "numerics version": record["numerics_version"],
         "compiler": f"{record['compiler']}, {record['flags']}, {record['instruction_set']}",
         "host": f"{record['host']}, {processor()}",
         "system": platform.platform(),

@@ -1,75 +1,86 @@
-"""The report: one self-contained HTML page and a Markdown summary. Every figure in it comes from the runs made for it, or
-names the command, date and checksum of the stored one.
-"""
+"""The report: one self-contained HTML page and a Markdown summary, drawn from what the store holds. It runs nothing, and says of
+every figure when, where and from which sources it was made."""
 
 import json
+import math
 import shutil
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import timedelta
 from pathlib import Path
 
-from verification.codes.mappm import Options
-from verification.protocol.machine import ROOT, cores
-from verification.protocol.run import Run
+from verification.protocol.errors import StoreError
+from verification.protocol.machine import ROOT
 from verification.report.chapters import chapters_of, families_of, rows_of
-from verification.report.figures import CaseFigures, case_figures, family_figures, shown_figures, stored_figures, suite_figures
+from verification.report.figures import CaseFigures, case_figures, family_figures, shown_figures, suite_figures
 from verification.report.history import changes, errors_of, read_history
 from verification.report.page import write_page, write_summary
 from verification.report.provenance import checksum, provenance, reference_checksums
 from verification.report.speed_charts import CHARTS
-from verification.report.stored import FULL, PUBLISHED, finite
-from verification.suite.case import Case
+from verification.store.export import export, import_into
+from verification.store.laboratory import Laboratory
+from verification.store.store import Store, StoredRun
 from verification.suite.judge import CORRECT, SKIPPED
-from verification.suite.manifest import all_cases, find_case
-from verification.suite.progress import Progress
-from verification.suite.references import run_all_live
-from verification.suite.result import CaseResult, judged, run_bits
-from verification.suite.runner import Job, jobs_of, run_jobs
+from verification.suite.result import CaseResult, collect
+from verification.suite.stale import Stale, stale_of
+from verification.suite.table import table
+from verification.suite.tier import SHOWN, SHOWN_STEPS, cases_of, shown_request, subject
 
-SHOWN = "gas_solid_small"
-STEPS = {"quick": 4_000, "full": 30_000}  # of the long run
-# Made by commands of their own.
-STORED = {"full": FULL.name, "mutation": "mutation.json", "robustness": "robustness.json"} | {name: f"{name}.json" for name in CHARTS}
+PUBLISHED = ROOT / "reports" / "published"
+STORE = PUBLISHED / "store.jsonl"
+STORED = {"mutation": "mutation.json", "robustness": "robustness.json"}  # made by commands of their own
 
 
-def _cases(tier: str) -> list[Case]:
-    return [case for case in all_cases() if case.judged and (tier == "full" or case.tier == "quick")]
+@dataclass(frozen=True)
+class Shelf:
+    """What was published, as a store that nothing is entered into."""
+
+    store: Store
 
 
-def _run_all(progress: Progress, cases: list[Case], tier: str, folder: Path) -> dict:
-    jobs = [job for case in cases for job in jobs_of(case, tier)]
-    with progress.stage(f"{len(jobs)} runs of {len(cases)} cases") as say:
-        started, ended = time.monotonic(), 0
-
-        def done(job: Job, share: float) -> None:
-            nonlocal ended
-            ended += 1
-            left = (time.monotonic() - started) * (1 - share) / share
-            say(f"{ended} of {len(jobs)} runs, last {job.case.name}", left)
-
-        return run_jobs(jobs, folder, Options(), cores(), done)
+def published() -> Shelf:
+    store = Store(":memory:")
+    for file in (STORE, PUBLISHED / "bench.jsonl"):
+        if file.exists():
+            import_into(store, file)
+    return Shelf(store)
 
 
-def _judge_all(progress: Progress, cases: list[Case], tier: str, folder: Path) -> list[CaseResult]:
-    """Failures first."""
-    found = _run_all(progress, cases, tier, folder)
-    runs = {case.name: {key: run for (name, key), run in found.items() if name == case.name} for case in cases}
-    with progress.stage("reference codes") as say:
-        live = run_all_live(cases, tier, runs, folder, say)
-    results = []
-    for case in cases:
-        bits = None
-        if case.equivalence is not None:
-            with progress.stage(f"bits of {case.name}") as say:
-                bits = run_bits(case, folder, say)
-        results.append(judged(case, tier, runs[case.name], bits, live.get(case.name)))
-    return sorted(results, key=lambda result: result.holds)
+def _result(laboratory: Laboratory, shelf: Shelf, case) -> CaseResult | None:
+    """At the finest tier that is whole: of this laboratory, or, of the full tier alone, as published."""
+    code = subject()
+    for tier, place in (("full", laboratory), ("full", shelf), ("quick", laboratory)):
+        if tier == "full" or case.tier == "quick":
+            result = collect(place, case, tier, code)
+            if result is not None:
+                return result
+    return None
 
 
-def _ledger(run: Run) -> list[dict]:
+def results_of(laboratory: Laboratory, shelf: Shelf) -> tuple[list[CaseResult], list[str]]:
+    """(what there is, failures first; names of the cases that were not run)."""
+    found, absent = [], []
+    for case in cases_of("full"):
+        result = _result(laboratory, shelf, case)
+        if result is None:
+            absent.append(case.name)
+        else:
+            found.append(result)
+    return sorted(found, key=lambda result: result.holds), absent
+
+
+def _shown(laboratory: Laboratory) -> tuple[StoredRun, int]:
+    """The long run, and its steps: of the full tier where that is there."""
+    for tier in ("full", "quick"):
+        request = shown_request(tier)
+        if (stored := laboratory.store.run(request.key)) is not None:
+            return stored, SHOWN_STEPS[tier]
+    raise StoreError(f"{laboratory.store.file}: has no long run of {SHOWN}; leave out --only-draw")
+
+
+def _ledger(record: dict) -> list[dict]:
     """Per axis: momentum at the start, impulse from outside, momentum at the end, and what does not add up."""
-    momentum = run.record["momentum"]
+    momentum = record["momentum"]
     rows = zip("xyz", momentum["start"], momentum["impulse"], momentum["end"], strict=False)
     return [
         {"axis": axis, "start": start, "impulse": impulse, "end": end, "defect": int(end) - int(start) - int(impulse)}
@@ -87,72 +98,79 @@ def _stored() -> dict[str, dict]:
     return found
 
 
+def _finite(value):
+    """NaN and infinity have no JSON."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
 def _results_json(tier: str, origin: dict[str, str], results: list[CaseResult]) -> dict:
-    errors = {key: {name: finite(value) for name, value in row.items()} for key, row in errors_of(results).items()}
+    errors = {key: {name: _finite(value) for name, value in row.items()} for key, row in errors_of(results).items()}
     return {"date": origin["date"], "commit": origin["commit"], "tier": tier, "errors": errors}
 
 
-def _publish(out: Path, figures: list[Path], entry: dict) -> None:
-    """Copies page, summary and its pictures to reports/published and adds an entry to the history there."""
+def _publish(laboratory: Laboratory, page: Path, figures: list[Path], entry: dict) -> None:
+    """Copies page, summary and its pictures to reports/published, with the store as text, and adds an entry to the history there."""
     PUBLISHED.mkdir(parents=True, exist_ok=True)
-    for file in (out / "index.html", out / "summary.md", *figures):
+    for file in (page / "index.html", page / "summary.md", *figures):
         shutil.copy(file, PUBLISHED / file.name)
+    export(laboratory.store, STORE)
     history = [*read_history(PUBLISHED / "history.json"), entry]
     (PUBLISHED / "history.json").write_text(json.dumps(history, indent=1) + "\n")
 
 
-def write_report(tier: str, out: Path, publish: bool) -> int:
-    """Runs all that the tier asks for, writes out/index.html, out/summary.md and out/results.json. Returns 0 where everything
-    holds."""
+def _benches(laboratory: Laboratory, shelf: Shelf) -> dict:
+    """Figures of each benchmark: those of this laboratory, or as published."""
+    found = {name: laboratory.store.figures(name) or shelf.store.figures(name) for name in CHARTS}
+    return {name: figures for name, figures in found.items() if figures}
+
+
+def draw_report(laboratory: Laboratory, tier: str, page: Path, publish: bool) -> int:
+    """Writes index.html, summary.md and results.json into the folder `page`. Returns 0 where everything holds."""
     started = time.monotonic()
-    shutil.rmtree(out, ignore_errors=True)
-    runs = out / "runs"
-    runs.mkdir(parents=True)
-    cases = _cases(tier)
-    progress = Progress(stages=5 + sum(case.equivalence is not None for case in cases))
-    results = _judge_all(progress, cases, tier, runs)
-    shown = progress.run(find_case(SHOWN).file, runs / SHOWN / "shown", Options(ranks=2, steps=STEPS[tier]), STEPS[tier],
-                         f"{SHOWN}, P=2")
-    origin = provenance(shown)
+    shutil.rmtree(page, ignore_errors=True)
+    page.mkdir(parents=True)
+    shelf = published()
+    results, absent = results_of(laboratory, shelf)
+    shown, steps = _shown(laboratory)
+    stale: list[Stale] = stale_of(laboratory, absent)
+    origin = provenance(shown.record)
     entry = _results_json(tier, origin, results)
     history = read_history(PUBLISHED / "history.json")
-    with progress.stage("pictures") as say:
-        figures: dict[str, CaseFigures] = {}
-        for result in results:
-            say(result.case.name)
-            figures[result.case.name] = case_figures(result, out)
-        families = [replace(family, charts=family_figures(list(family.results), out)) for family in families_of(results)]
-        chapters = chapters_of(results, figures, families)
-        rows = rows_of(families)
-        suite = suite_figures([(row.name, row.outcome) for row in rows], [*history, entry], out)
-        shown_pictures = shown_figures(shown, out)
-        stored = _stored()
-        full_charts = stored_figures(stored["full"]["data"], out) if "full" in stored else []
-        speed_charts = {name: out / f"{name}.svg" for name in CHARTS if name in stored}
-        for name, file in speed_charts.items():
-            CHARTS[name](stored[name]["data"]["figures"], file)
-    with progress.stage("page"):
-        origin |= {chapter.code: chapter.version for chapter in chapters}
-        content = {
-            "tier": tier, "results": results, "figures": figures, "families": families, "chapters": chapters,
-            "rows": rows, "suite": suite, "shown_pictures": shown_pictures,
-            "shown": SHOWN, "steps": STEPS[tier], "record": shown.record, "ledger": _ledger(shown), "stored": stored,
-            "speed_charts": speed_charts,
-            "full_charts": full_charts, "purposes": {case.name: case.purpose for case in all_cases()},
-            "changes": changes(history, entry["errors"]), "history": history, "provenance": origin,
-            "checksums": reference_checksums(), "took": str(timedelta(seconds=round(time.monotonic() - started))),
-        }
-        write_page(content, out / "index.html")
-        write_summary(content, out / "summary.md")
-        (out / "results.json").write_text(json.dumps(entry, indent=1) + "\n")
+    figures: dict[str, CaseFigures] = {result.case.name: case_figures(laboratory, result, page) for result in results}
+    families = [replace(family, charts=family_figures(list(family.results), page)) for family in families_of(results)]
+    chapters = chapters_of(results, figures, families)
+    rows = rows_of(families)
+    suite = suite_figures([(row.name, row.outcome) for row in rows], [*history, entry], page)
+    with laboratory.kept(shown.key) as run:
+        shown_pictures = shown_figures(run, page)
+    stored, benches = _stored(), _benches(laboratory, shelf)
+    speed_charts = {name: page / f"{name}.svg" for name in benches}
+    for name, file in speed_charts.items():
+        CHARTS[name](benches[name], file)
+    origin |= {chapter.code: chapter.version for chapter in chapters}
+    content = {
+        "tier": tier, "results": results, "figures": figures, "families": families, "chapters": chapters, "rows": rows, "suite": suite,
+        "shown_pictures": shown_pictures, "shown": SHOWN, "steps": steps, "record": shown.record, "shown_made": shown.made,
+        "ledger": _ledger(shown.record), "stored": stored, "benches": benches, "speed_charts": speed_charts, "absent": absent,
+        "stale": stale, "table": table(laboratory), "changes": changes(history, entry["errors"]), "history": history, "provenance": origin,
+        "checksums": reference_checksums(), "took": str(timedelta(seconds=round(time.monotonic() - started))),
+    }
+    write_page(content, page / "index.html")
+    write_summary(content, page / "summary.md")
+    (page / "results.json").write_text(json.dumps(entry, indent=1) + "\n")
     if publish:
-        _publish(out, [suite["overview"].with_suffix(".png"), shown_pictures["field"]], entry)
+        _publish(laboratory, page, [suite["overview"].with_suffix(".png"), shown_pictures["field"]], entry)
+    return _tell(content, page)
+
+
+def _tell(content: dict, page: Path) -> int:
+    results = content["results"]
     holds = all(result.holds for result in results) and not any(row["defect"] for row in content["ledger"])
     for result in results:
         print("\n".join(f"{result.case.name}: {line}" for line in result.lines))
     verdicts = [outcome.verdict for result in results for outcome in result.outcomes]
     skipped = f", {verdicts.count(SKIPPED)} SKIPPED" if SKIPPED in verdicts else ""
-    print(f"{verdicts.count(CORRECT)} of {len(verdicts)} observables CORRECT{skipped}; took {content['took']}")
-    that_ran = " that was run" if skipped else ""
-    print(f"report: {out / 'index.html'}: {f'everything{that_ran} holds' if holds else 'SOMETHING DOES NOT HOLD'}")
+    print(f"{verdicts.count(CORRECT)} of {len(verdicts)} observables CORRECT{skipped}; drawn in {content['took']}")
+    that_ran = " that was run" if skipped or content["absent"] else ""
+    print(f"report: {page / 'index.html'}: {f'everything{that_ran} holds' if holds else 'SOMETHING DOES NOT HOLD'}")
     return 0 if holds else 1

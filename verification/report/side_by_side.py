@@ -9,7 +9,6 @@ from matplotlib.tri import LinearTriInterpolator, Triangulation
 from verification.protocol.run import Run
 from verification.protocol.scene import in_si
 from verification.report.charts import figure_of
-from verification.suite.references import LiveRun
 
 NODES = 200  # along each side of the picture
 SLAB = 0.75  # half the thickness of the layer about the middle plane that is shown of a scene in space, in spacings
@@ -74,14 +73,14 @@ def _seen_from_the_body(run: Run, box: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return points, velocity
 
 
-def speeds(run: Run, live: LiveRun) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def speeds(run: Run, other: Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(box, speed of this code, speed of the reference code), the latter two (NODES, NODES), NaN inside of the fixed solids."""
     box = np.array([in_si(side) for side in run.scene["box"]["size"]])
     x, y = np.meshgrid(*((np.arange(NODES) + 0.5) / NODES * side for side in box[:2]))
-    field = np.load(live.folder / live.result.field)
+    field = other.fluid()
     half = SLAB * in_si(run.scene["fluid"]["spacing"])
     ours = _plane(*_seen_from_the_body(run, box), box, half)
-    theirs = _plane(field["points"], field["velocity"], box, np.inf)
+    theirs = _plane(field["points"][:, : len(box)], field["velocity"][:, : len(box)], box, np.inf)
     solid, surface = _in_bodies(run.scene, box, x, y), _surfaces(run.scene, box)
     grids = []
     for points, speed in (ours, theirs):
@@ -90,14 +89,14 @@ def speeds(run: Run, live: LiveRun) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     return box, *grids
 
 
-def compare_fields(run: Run, live: LiveRun, title: str, file: Path) -> None:
-    box, ours, theirs = speeds(run, live)
+def compare_fields(run: Run, other: Run, code: str, title: str, file: Path) -> None:
+    box, ours, theirs = speeds(run, other)
     apart = (ours - theirs) / np.nanmean(theirs)
     top = float(np.nanmax(theirs))
     edge = float(np.nanquantile(np.abs(apart), 0.99))
     extent = (0.0, box[0], 0.0, box[1])
     with figure_of(file, 10.5, 1.0 + 3.0 * box[1] / box[0], columns=3) as axes:
-        for panel, values, name in ((axes[0], ours, "MaPPM"), (axes[1], theirs, live.result.code)):
+        for panel, values, name in ((axes[0], ours, "MaPPM"), (axes[1], theirs, code)):
             drawn = panel.imshow(values, origin="lower", extent=extent, cmap="viridis", vmin=0.0, vmax=top)
             panel.set_title(f"{name}: speed", fontsize=10)
         panel.figure.colorbar(drawn, ax=list(axes[:2]), shrink=0.85)
