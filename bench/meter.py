@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from reference.scripted import Failed
 from verification.protocol.errors import SolverError, StoreError
@@ -34,14 +34,17 @@ class Speed:
     phases: dict[str, float] | None = None  # wall seconds
 
 
+Key, Timed = TypeVar("Key"), TypeVar("Timed", bound=Speed)
+
+
 class Meter:
     """Rounds of runs: each round makes every run once, in turn."""
 
     def __init__(self, repeats: int, say: Callable[[str], None]):
         self.repeats, self.say = repeats, say
 
-    def rounds(self, name: str, runs: dict[str, Callable[[], Speed]]) -> dict[str, list[Speed]]:
-        found: dict[str, list[Speed]] = {key: [] for key in runs}
+    def rounds(self, name: str, runs: dict[Key, Callable[[], Timed]]) -> dict[Key, list[Timed]]:
+        found: dict[Key, list[Timed]] = {key: [] for key in runs}
         started = time.monotonic()
         for done in range(self.repeats):
             for key, once in runs.items():
@@ -87,6 +90,27 @@ def shown(rows: Iterable[Row]) -> Iterator[str]:
         yield " ".join(filter(None, (one.name, words_of(one.settings), f"{one.value:.4g}", one.unit)))
 
 
+@dataclass(frozen=True)
+class Printed:
+    """A figure of a program of the build, which prints `figure OWNER.NAME VALUE` or `ratio OWNER.NAME VALUE`."""
+
+    owner: tuple[str, ...]  # words between full stops, of fluids without their prefix
+    name: str
+    value: float
+
+
+def printed(text: str) -> list[Printed]:
+    """All that such a program printed; other lines are left out."""
+    found = []
+    for line in text.splitlines():
+        kind, _, rest = line.partition(" ")
+        if kind in ("figure", "ratio"):
+            words, value = rest.rsplit(" ", 1)
+            *owner, name = (word.removeprefix("fluid_") for word in words.split("."))
+            found.append(Printed(tuple(owner), name, float(value)))
+    return found
+
+
 class Measure(Protocol):
     def __call__(self, quick: bool, repeats: int, folder: Path, say: Callable[[str], None],
                  **more: object) -> tuple[list[Row], str]:
@@ -109,7 +133,6 @@ def command_line(name: str, words: str, add_options: AddOptions, rounds: int) ->
     parser = argparse.ArgumentParser(prog=f"python3 -m bench.{name}", description=words,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     add_options(parser)
-    added = [action.dest for action in parser._actions if action.dest != "help"]
     parser.add_argument("--quick", action="store_true", help="small scenes, which take seconds: to see that all works")
     parser.add_argument("--repeats", type=at_least(1), help=f"rounds, at least 1; default {rounds}, with --quick 1")
     parser.add_argument("--lab", type=Path, metavar="DIR",
@@ -118,7 +141,7 @@ def command_line(name: str, words: str, add_options: AddOptions, rounds: int) ->
     options = parser.parse_args()
     options.repeats = options.repeats or (1 if options.quick else rounds)
     options.lab = options.lab or (None if options.quick else LABORATORY)
-    options.more = {key: getattr(options, key) for key in added}
+    options.more = {key: value for key, value in vars(options).items() if key not in ("quick", "repeats", "lab", "out")}
     more = "".join(f" --{key} {value}" for key, value in options.more.items())
     return options, f"python3 -m bench.{name}{more}{' --quick' if options.quick else ''} --repeats {options.repeats}"
 
