@@ -19,12 +19,21 @@ def words_of(settings: dict[str, Setting]) -> str:
     return " ".join(f"{key}={value}" for key, value in settings.items())
 
 
+def _place(value: Setting) -> tuple[bool, float, str]:
+    """Numbers come before words."""
+    return (True, 0.0, value) if isinstance(value, str) else (False, value, "")
+
+
+def _order(row: Figure) -> tuple:
+    return row.name, sorted((key, _place(value)) for key, value in row.settings.items())
+
+
 class Figures:
-    """Of one benchmark, in the order in which they were entered."""
+    """Of one benchmark, by name and settings, numbers by size."""
 
     def __init__(self, bench: str, rows: Iterable[Figure]):
         """Throws ValueError where a row is of another benchmark."""
-        self.bench, self.rows = bench, tuple(rows)
+        self.bench, self.rows = bench, tuple(sorted(rows, key=_order))
         others = {row.bench for row in self.rows} - {bench}
         if others:
             raise ValueError(f"{bench}: rows are of {', '.join(sorted(others))}")
@@ -59,9 +68,8 @@ class Figures:
         return [row for row in self.rows if row.name == name and settings.items() <= row.settings.items()]
 
     def settings(self, key: str) -> list[Setting]:
-        """The values of a setting that occur, each once: numbers by size, then words as they were entered."""
-        found = list(dict.fromkeys(row.settings[key] for row in self.rows if key in row.settings))
-        return sorted(one for one in found if not isinstance(one, str)) + [one for one in found if isinstance(one, str)]
+        """The values of a setting that occur, each once: numbers by size, then words."""
+        return sorted({row.settings[key] for row in self.rows if key in row.settings}, key=_place)
 
 
 def by_bench(rows: Sequence[Figure]) -> dict[str, Figures]:
