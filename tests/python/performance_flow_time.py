@@ -3,9 +3,10 @@
 import math
 from pathlib import Path
 
+from benchmarks import benchmark, measured
+
 from bench.flow_time import NEW, OLD, QUICK_SCENES, FlowTime, rows_of
 from bench.meter import entered
-from benchmarks import benchmark, measured
 from verification.codes.mappm import build_folder
 from verification.store.store import Made
 

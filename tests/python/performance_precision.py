@@ -6,10 +6,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from benchmarks import assert_drawn, measured
 
 from bench import precision
 from bench.meter import row
-from benchmarks import assert_drawn, measured
 from verification.codes.mappm import build_folder
 from verification.report.speed_charts import precisions
 

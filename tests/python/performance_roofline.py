@@ -4,10 +4,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from benchmarks import assert_drawn, measured
 
 from bench import roofline
 from bench.roofline import PARTS, Costs, apart
-from benchmarks import assert_drawn, measured
 from verification.report.speed_charts import bounds
 from verification.store.figures import Figures
 

@@ -4,11 +4,11 @@ import math
 from pathlib import Path
 
 import pytest
+from benchmarks import assert_drawn, benchmark, measured
 
 from bench import cost_model, scaling
 from bench.meter import Broken
 from bench.scaling import Point
-from benchmarks import assert_drawn, benchmark, measured
 from verification.report.speed_charts import costs, scalings
 
 

@@ -4,11 +4,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from benchmarks import assert_drawn, measured
 
 from bench import solids
 from bench.meter import entered
 from bench.solids import Cost
-from benchmarks import assert_drawn, measured
 from verification.report.solid_charts import costs_of_solids
 from verification.store.store import Made
 

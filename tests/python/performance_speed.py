@@ -5,11 +5,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from benchmarks import assert_drawn, measured
 
 from bench import codes, meter, speed
 from bench.codes import peers
 from bench.meter import Broken, Meter, Speed
-from benchmarks import assert_drawn, measured
 from verification.report.speed_charts import speeds
 from verification.store.figures import Figures
 
