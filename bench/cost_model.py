@@ -1,6 +1,6 @@
 """What a step costs, taken apart, and what it would cost on processes that this machine does not have.
 
-    python3 -m bench.cost_model [--quick] [--repeats N] [--json FILE] [--out DIR]
+    python3 -m bench.cost_model [--quick] [--repeats N] [--lab DIR] [--out DIR]
 
 The step of a process that owns n PPs, and sends b bytes in m messages, is taken to last
 
@@ -22,11 +22,12 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.meter import Broken, run_benchmark
-from bench.scaling import Lab, Point, doubled, median_of, require_one_digest
+from bench.meter import Broken, Row, printed, row, run_benchmark
+from bench.scaling import Point, Runner, doubled, median_of, require_one_digest
 from bench.speed import scene_of
 from verification.codes.mappm import MPI_ENVIRONMENT, Options, program
 from verification.protocol.run import Run
+from verification.store.figures import Setting
 
 PAPER_BOX, PAPER_DENSITY = (177.0, 2816.0), 12.83  # rcut; PPs to the square of rcut
 PAPER_PROCESSES = (1, 4, 16, 64, 256, 1024)
@@ -61,10 +62,10 @@ def cost_of_messages() -> tuple[float, float]:
     """(of a message, of a byte), s."""
     done = subprocess.run(["mpirun", "-np", "2", str(program("bench-parallel_exchange"))], env=os.environ | MPI_ENVIRONMENT,
                           capture_output=True, text=True)
-    lines = dict(line.rsplit(" ", 1) for line in done.stdout.splitlines() if line.startswith("figure "))
-    if done.returncode != 0 or len(lines) != 2:
+    found = {one.name: one.value for one in printed(done.stdout)}
+    if done.returncode != 0 or len(found) != 2:
         raise Broken(f"bench-parallel_exchange ended with {done.returncode}: {done.stderr[-500:]}")
-    return 1e-6 * float(lines["figure message.microseconds"]), 1e-9 * float(lines["figure message.nanoseconds_per_byte"])
+    return 1e-6 * found["microseconds"], 1e-9 * found["nanoseconds_per_byte"]
 
 
 def margin_of(box: tuple[float, float], grid: tuple[int, int]) -> float:
@@ -92,39 +93,53 @@ def best_grid(model: CostModel, bytes_per_ghost: float, processes: int) -> tuple
     return min(fitting, key=lambda grid: predicted(model, bytes_per_ghost, grid))
 
 
-def measure(quick: bool, repeats: int, folder: Path, say: Callable[[str], None]) -> tuple[dict[str, float], str]:
-    """Figures by "ratio NAME" or "figure NAME", and the commit they are of. Throws Broken, SolverError."""
-    lab = Lab(folder, repeats, say)
+def model_rows(model: CostModel, bytes_per_ghost: float) -> list[Row]:
+    return [
+        row("nanoseconds_per_particle", 1e9 * model.particle, "ns"),
+        row("nanoseconds_per_ghost", 1e9 * model.ghost_byte * bytes_per_ghost, "ns"),
+        row("microseconds_per_message", 1e6 * model.message, "us"),
+        row("nanoseconds_per_byte", 1e9 * model.sent_byte, "ns"),
+        row("bytes_per_ghost", bytes_per_ghost, "B"),
+    ]
+
+
+def layout_rows(model: CostModel, points: dict[str, Point]) -> list[Row]:
+    rows = []
+    for name, point in points.items():
+        seconds = model.seconds(point.particles / point.processes, point.messages, point.bytes)
+        rows += [row("microseconds_per_step", 1e6 * point.seconds, "us", layout=name),
+                 row("measured_over_predicted", point.seconds / seconds, layout=name)]
+    return rows
+
+
+def paper_rows(model: CostModel, bytes_per_ghost: float) -> list[Row]:
+    """Of the paper's system, on processes that may not be there."""
+    alone, rows = predicted(model, bytes_per_ghost, (1, 1)), []
+    for processes in PAPER_PROCESSES:
+        grid = best_grid(model, bytes_per_ghost, processes)
+        seconds = predicted(model, bytes_per_ghost, grid)
+        here: dict[str, Setting] = {"system": "paper", "ranks": processes}
+        rows += [row("domains_along_x", grid[0], **here), row("microseconds_per_step", 1e6 * seconds, "us", **here),
+                 row("efficiency", alone / seconds / processes, **here)]
+    return rows
+
+
+def measure(quick: bool, repeats: int, folder: Path, say: Callable[[str], None]) -> tuple[list[Row], str]:
+    """Figures, and the commit they are of. Throws Broken, SolverError."""
+    runner = Runner(folder, repeats, say)
     layouts = QUICK_LAYOUTS if quick else LAYOUTS
     found: dict[str, list[Point]] = {name: [] for name in layouts}
-    for done in range(lab.repeats):
+    for done in range(repeats):
         for name, (sides, domains) in layouts.items():
-            found[name].append(lab.once(name, sides, 10 if quick else 60, Options(ranks=2, domains=domains)))
-        lab.say(f"round {done + 1} of {lab.repeats}")
+            found[name].append(runner.once(name, sides, 10 if quick else 60, Options(ranks=2, domains=domains)))
+        say(f"round {done + 1} of {repeats}")
     require_one_digest([*found["narrow"], *found["wide"]])
     points = {name: median_of(rounds) for name, rounds in found.items()}
     model = CostModel(*fit_work(list(points.values())), *cost_of_messages())
     cutoff = float(scene_of(2, (1, 1))[1].partition("=")[2])
     bytes_per_ghost = points["wide"].bytes / (2.0 * MARGIN * cutoff * layouts["wide"][0][0])  # spacing 1, two margins
-    figures = {
-        "figure nanoseconds_per_particle": 1e9 * model.particle,
-        "figure nanoseconds_per_ghost": 1e9 * model.ghost_byte * bytes_per_ghost,
-        "figure microseconds_per_message": 1e6 * model.message,
-        "figure nanoseconds_per_byte": 1e9 * model.sent_byte,
-        "figure bytes_per_ghost": bytes_per_ghost,
-    }
-    for name, point in points.items():
-        seconds = model.seconds(point.particles / point.processes, point.messages, point.bytes)
-        figures[f"figure run_{name}.microseconds_per_step"] = 1e6 * point.seconds
-        figures[f"ratio run_{name}.measured_over_predicted"] = point.seconds / seconds
-    alone = predicted(model, bytes_per_ghost, (1, 1))
-    for processes in PAPER_PROCESSES:
-        grid = best_grid(model, bytes_per_ghost, processes)
-        seconds = predicted(model, bytes_per_ghost, grid)
-        figures[f"figure paper.{processes}.domains_along_x"] = grid[0]
-        figures[f"figure paper.{processes}.microseconds_per_step"] = 1e6 * seconds
-        figures[f"ratio paper.{processes}.efficiency"] = alone / seconds / processes
-    return figures, Run(folder / "fluid").record["commit"]
+    rows = model_rows(model, bytes_per_ghost) + layout_rows(model, points) + paper_rows(model, bytes_per_ghost)
+    return rows, Run(folder / "fluid").record["commit"]
 
 
 def main() -> int:

@@ -1,13 +1,13 @@
 """What flow time costs in two builds of the solver, an older one and this one, side by side.
 
-    python3 -m bench.flow_time --old FOLDER [--quick] [--repeats N] [--json FILE] [--out DIR]
+    python3 -m bench.flow_time --old FOLDER [--quick] [--repeats N] [--lab DIR] [--out DIR]
 
 FOLDER holds the build of another checkout: its bin/mappm is run. Each build takes its own default step (step_factor 1), for
 the same flow time. The cost is that of an h/c of flow time for a PP, in core-seconds: a longer step, a dearer step and fewer
 processes all show in it; h is half the range of the pair law. The scenes: a periodic fluid at c = 20 U in the plane and in
 space; the same with solids at 13 %; Stokes flow past an array of fixed discs, where viscosity limits the step. On one process
-and on two. Builds alternate; a figure is a median over rounds, and a ratio the median of ratios within one round. `ratio
-flow_time.SCENE_P` is the old cost over the new one on P processes: above 1 this build is cheaper. Prints a line a figure.
+and on two. Builds alternate; a figure is a median over rounds, and a ratio the median of ratios within one round.
+Where `old_cost_over_new` is above 1 this build is cheaper. Prints a line a figure: name, settings, value, unit.
 Ends with 1 where a measurement is broken (a run that failed, digests that differ between one process and two), never because
 the machine is slow.
 """
@@ -22,12 +22,13 @@ from pathlib import Path
 
 from bench.codes import SCENE, fluid_table
 from bench.largest_step import VISCOSITY
-from bench.meter import Broken, Meter, Speed, median_rate, median_ratio, run_benchmark
+from bench.meter import Broken, Meter, Row, Speed, median_rate, median_ratio, row, run_benchmark
 from bench.solids import GAS_SOLID, QUICK_SUSPENSIONS, SUSPENSIONS, UNSAMPLED, Suspension
 from reference.periodic_fluid import Fluid
 from verification.codes.mappm import Options, build_folder, run
 from verification.protocol.errors import SolverError
 from verification.protocol.machine import ROOT
+from verification.store.figures import Setting
 
 STOKES = ROOT / "cases" / "cylinder_stokes" / "case.toml"
 PROCESSES = (1, 2)
@@ -100,28 +101,29 @@ def flow_time_of(scene: Scene, build: Path, ranks: int, folder: Path) -> FlowTim
     return FlowTime(pps / seconds, record["digest"], step=step, cost=ranks * seconds / step / pps, commit=record["commit"])
 
 
-def figures_of(name: str, found: dict[tuple[str, int], list[FlowTime]]) -> dict[str, float]:
-    figures = {}
+def rows_of(scene: str, found: dict[tuple[str, int], list[FlowTime]]) -> list[Row]:
+    rows = []
     for build in (OLD, NEW):
-        figures[f"figure flow_time.{name}.{build}_step"] = found[build, 1][0].step
+        here: dict[str, Setting] = {"scene": scene, "build": build}
+        rows.append(row("step", found[build, 1][0].step, "h/c", **here))
         for ranks in PROCESSES:
             times = found[build, ranks]
-            figures[f"figure flow_time.{name}.{build}_particle_steps_per_s_{ranks}"] = median_rate(times)
-            figures[f"figure flow_time.{name}.{build}_core_s_per_pp_{ranks}"] = statistics.median(time.cost for time in times)
-        figures[f"ratio flow_time.{name}.{build}_two_over_one"] = median_ratio(found[build, 2], found[build, 1])
+            rows += [row("particle_steps_per_s", median_rate(times), "1/s", **here, ranks=ranks),
+                     row("core_s_per_pp", statistics.median(time.cost for time in times), "s/(h/c)", **here, ranks=ranks)]
+        rows.append(row("two_processes_over_one", median_ratio(found[build, 2], found[build, 1]), **here))
     for ranks in PROCESSES:
-        figures[f"ratio flow_time.{name}_{ranks}"] = statistics.median(
-            old.cost / new.cost for old, new in zip(found[OLD, ranks], found[NEW, ranks], strict=True))
-    return figures
+        ratios = (old.cost / new.cost for old, new in zip(found[OLD, ranks], found[NEW, ranks], strict=True))
+        rows.append(row("old_cost_over_new", statistics.median(ratios), scene=scene, ranks=ranks))
+    return rows
 
 
 def measure(quick: bool, repeats: int, folder: Path, say: Callable[[str], None],
-            old: Path) -> tuple[dict[str, float], str]:
-    """Figures by "ratio NAME" or "figure NAME", and the commits they are of. Throws Broken, SolverError."""
+            old: Path) -> tuple[list[Row], str]:
+    """Figures, and the commits they are of. Throws Broken, SolverError."""
     if not (old / "bin" / "mappm").exists():
         raise SolverError(f"--old {old}: there is no bin/mappm in it; give the folder of a build, such as build/fast of a checkout")
     meter, builds = Meter(repeats, say), {OLD: old.resolve(), NEW: build_folder()}
-    figures: dict[str, float] = {}
+    rows: list[Row] = []
     for name, scene in (QUICK_SCENES if quick else SCENES).items():
         runs: dict[tuple[str, int], Callable[[], FlowTime]] = {}
         for ranks in PROCESSES:
@@ -131,8 +133,8 @@ def measure(quick: bool, repeats: int, folder: Path, say: Callable[[str], None],
         for build in builds:
             if found[build, 1][0].digest != found[build, 2][0].digest:
                 raise Broken(f"{name}, {build} build: the digest on two processes is not that on one")
-        figures |= figures_of(name, found)
-    return figures, f"{found[NEW, 1][0].commit}, beside {found[OLD, 1][0].commit}"
+        rows += rows_of(name, found)
+    return rows, f"{found[NEW, 1][0].commit}, beside {found[OLD, 1][0].commit}"
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

@@ -1,20 +1,24 @@
-"""What the benchmarks share: rounds of runs in turn, medians, the command line, and the table of figures."""
+"""What the benchmarks share: rounds of runs in turn, medians, the command line, and figures on their way to the store."""
 
 import argparse
-import json
 import statistics
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from reference.scripted import Failed
-from verification.protocol.errors import SolverError
-from verification.protocol.machine import cores, processor
+from verification.protocol.errors import SolverError, StoreError
+from verification.protocol.machine import ROOT
+from verification.store.figures import Figures, Setting, words_of
+from verification.store.laboratory import Laboratory, made_now
+from verification.store.store import Figure, Made
+
+LABORATORY = ROOT / "runs"
+AddOptions = Callable[[argparse.ArgumentParser], None]
 
 
 class Broken(RuntimeError):
@@ -30,14 +34,17 @@ class Speed:
     phases: dict[str, float] | None = None  # wall seconds
 
 
+Key, Timed = TypeVar("Key"), TypeVar("Timed", bound=Speed)
+
+
 class Meter:
     """Rounds of runs: each round makes every run once, in turn."""
 
     def __init__(self, repeats: int, say: Callable[[str], None]):
         self.repeats, self.say = repeats, say
 
-    def rounds(self, name: str, runs: dict[str, Callable[[], Speed]]) -> dict[str, list[Speed]]:
-        found: dict[str, list[Speed]] = {key: [] for key in runs}
+    def rounds(self, name: str, runs: dict[Key, Callable[[], Timed]]) -> dict[Key, list[Timed]]:
+        found: dict[Key, list[Timed]] = {key: [] for key in runs}
         started = time.monotonic()
         for done in range(self.repeats):
             for key, once in runs.items():
@@ -58,48 +65,100 @@ def median_ratio(over: list[Speed], under: list[Speed]) -> float:
     return statistics.median(a.rate / b.rate for a, b in zip(over, under, strict=True))
 
 
+@dataclass(frozen=True)
+class Row:
+    """A figure of a benchmark. The unit is empty for pure numbers: ratios, shares and counts."""
+
+    name: str
+    value: float
+    unit: str
+    settings: dict[str, Setting]
+
+
+def row(name: str, value: float, unit: str = "", **settings: Setting) -> Row:
+    return Row(name, value, unit, settings)
+
+
+def entered(bench: str, rows: Iterable[Row], made: Made) -> Figures:
+    """As the store keeps them."""
+    return Figures(bench, [Figure(bench, one.settings, one.name, one.value, made, one.unit) for one in rows])
+
+
+def shown(rows: Iterable[Row]) -> Iterator[str]:
+    """A line a figure: name, settings, value, unit."""
+    for one in rows:
+        yield " ".join(filter(None, (one.name, words_of(one.settings), f"{one.value:.4g}", one.unit)))
+
+
+@dataclass(frozen=True)
+class Printed:
+    """A figure of a program of the build, which prints `figure OWNER.NAME VALUE` or `ratio OWNER.NAME VALUE`."""
+
+    owner: tuple[str, ...]  # words between full stops, of fluids without their prefix
+    name: str
+    value: float
+
+
+def printed(text: str) -> list[Printed]:
+    """All that such a program printed; other lines are left out."""
+    found = []
+    for line in text.splitlines():
+        kind, _, rest = line.partition(" ")
+        if kind in ("figure", "ratio"):
+            words, value = rest.rsplit(" ", 1)
+            *owner, name = (word.removeprefix("fluid_") for word in words.split("."))
+            found.append(Printed(tuple(owner), name, float(value)))
+    return found
+
+
 class Measure(Protocol):
     def __call__(self, quick: bool, repeats: int, folder: Path, say: Callable[[str], None],
-                 **more: object) -> tuple[dict[str, float], str]:
-        """Figures by "ratio NAME" or "figure NAME", and the commit they are of. Throws Broken, SolverError, Failed."""
+                 **more: object) -> tuple[list[Row], str]:
+        """Figures, and the commit they are of. Throws Broken, SolverError, Failed."""
 
 
-def keep(figures: dict[str, float], command: str, commit: str, file: Path | None) -> None:
-    """Prints a line a figure; writes them to the file, if there is one, with where they come from."""
-    for name, value in figures.items():
-        print(f"{name} {value:.4g}")
-    if file is None:
-        return
-    table = {"date": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC", "command": command, "commit": commit,
-             "host": f"{processor()}, {cores()} cores", "figures": figures}
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(json.dumps(table, indent=1) + "\n")
+def at_least(least: int) -> Callable[[str], int]:
+    """Reads an integer of the command line."""
+
+    def read(text: str) -> int:
+        if not text.isdecimal() or int(text) < least:
+            raise argparse.ArgumentTypeError(f"{text}: must be a number of at least {least}")
+        return int(text)
+
+    return read
 
 
-def run_benchmark(name: str, words: str, measure: Measure,
-                  add_options: Callable[[argparse.ArgumentParser], None] = lambda parser: None, rounds: int = 7) -> int:
-    """Reads the command line of `python3 -m bench.NAME`, measures, prints and keeps the figures. Options that are added go to
-    `measure` by their names. 1 where a measurement is broken."""
+def command_line(name: str, words: str, add_options: AddOptions, rounds: int) -> tuple[argparse.Namespace, str]:
+    """Options as they are given or by default, and the command that means the same."""
     parser = argparse.ArgumentParser(prog=f"python3 -m bench.{name}", description=words,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="small scenes, which take seconds: to see that all works")
-    parser.add_argument("--repeats", type=int, help=f"rounds, at least 1; default {rounds}, with --quick 1")
-    parser.add_argument("--json", type=Path, help="also keep the figures in this file")
-    parser.add_argument("--out", type=Path, help="folder of the runs (default: one that is removed)")
     add_options(parser)
+    parser.add_argument("--quick", action="store_true", help="small scenes, which take seconds: to see that all works")
+    parser.add_argument("--repeats", type=at_least(1), help=f"rounds, at least 1; default {rounds}, with --quick 1")
+    parser.add_argument("--lab", type=Path, metavar="DIR",
+                        help="laboratory whose store keeps the figures (default: runs of this checkout; with --quick none)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder of the runs (default: one that is removed)")
     options = parser.parse_args()
-    more = {key: value for key, value in vars(options).items() if key not in ("quick", "repeats", "json", "out")}
-    repeats = options.repeats if options.repeats is not None else (1 if options.quick else rounds)
-    if repeats < 1:
-        parser.error(f"--repeats {repeats}: must be at least 1")
+    options.repeats = options.repeats or (1 if options.quick else rounds)
+    options.lab = options.lab or (None if options.quick else LABORATORY)
+    options.more = {key: value for key, value in vars(options).items() if key not in ("quick", "repeats", "lab", "out")}
+    more = "".join(f" --{key} {value}" for key, value in options.more.items())
+    return options, f"python3 -m bench.{name}{more}{' --quick' if options.quick else ''} --repeats {options.repeats}"
+
+
+def run_benchmark(name: str, words: str, measure: Measure, add_options: AddOptions = lambda parser: None, rounds: int = 7) -> int:
+    """Reads the command line of `python3 -m bench.NAME`, measures, prints the figures and enters them into the store of the
+    laboratory. Options that are added go to `measure` by their names. 1 where a measurement is broken."""
+    options, command = command_line(name, words, add_options, rounds)
     with tempfile.TemporaryDirectory() as scratch:
         try:
-            figures, commit = measure(options.quick, repeats, options.out or Path(scratch),
-                                      lambda text: print(text, file=sys.stderr, flush=True), **more)
-        except (Broken, SolverError, Failed) as error:
+            store = Laboratory(options.lab).store if options.lab else None
+            rows, commit = measure(options.quick, options.repeats, options.out or Path(scratch),
+                                   lambda text: print(text, file=sys.stderr, flush=True), **options.more)
+            print("\n".join(shown(rows)), flush=True)
+            if store:
+                store.enter_figures(entered(name, rows, made_now(command, commit)).rows)
+        except (Broken, SolverError, Failed, StoreError) as error:
             print(f"{name}: {error}", file=sys.stderr)
             return 1
-    added = "".join(f" --{key} {value}" for key, value in more.items())
-    command = f"python3 -m bench.{name}{added}" + (" --quick" if options.quick else "")
-    keep(figures, f"{command} --repeats {repeats}", commit, options.json)
     return 0

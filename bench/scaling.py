@@ -1,30 +1,30 @@
 """How the solver scales over processes: the same fluid on more of them, more fluid on more of them, what they send each other.
 
-    python3 -m bench.scaling [--quick] [--processes N] [--repeats N] [--json FILE] [--out DIR]
+    python3 -m bench.scaling [--quick] [--processes N] [--repeats N] [--lab DIR] [--out DIR]
 
 The fluids are those of bench.speed. Every run of a fluid must end with the digest of one process, be it on 2 or on 64: 64 are run
-on the cores there are, with discs across their borders too, for the sake of the exchange and not of the time. The last run of all is the paper's system at full size,
-5.56 million PPs and 1024 discs. Prints a line a figure, `ratio NAME VALUE` or `figure NAME VALUE`; efficiencies are ratios of
-runs within one round. Ends with 1 where a measurement is broken, never because the machine is slow.
+on the cores there are, with discs across their borders too, for the sake of the exchange and not of the time. The last
+run of all is the paper's system at full size, 5.56 million PPs and 1024 discs. Prints a line a figure: name, settings, value, unit; efficiencies are ratios of runs within
+one round. Ends with 1 where a measurement is broken, never because the machine is slow.
 """
 
 import argparse
 import statistics
 import sys
-import tempfile
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 from bench.codes import SCENE
-from bench.meter import Broken, keep
+from bench.meter import Broken, Row, at_least, row, run_benchmark
 from bench.speed import scene_of
 from verification.codes.mappm import Options, run
-from verification.protocol.errors import SolverError
 from verification.protocol.machine import ROOT, cores
 from verification.protocol.run import Run
+from verification.store.figures import Setting
 
 PAPER = ROOT / "cases" / "gas_solid_paper" / "case.toml"
+NO_PHASES = ("output", "steps")  # of the seconds in run.json
 MANY = 64  # processes, on however few cores
 STRONG = {"2d": (1000, 1000), "3d": (80, 80, 80)}  # particles along the sides
 QUICK_STRONG = {"2d": (100, 100), "3d": (18, 18, 18)}
@@ -71,7 +71,7 @@ def doubled(most: int) -> list[int]:
     return [1 << power for power in range(most.bit_length()) if 1 << power <= most]
 
 
-class Lab:
+class Runner:
     def __init__(self, folder: Path, repeats: int, say: Callable[[str], None]):
         self.folder, self.repeats, self.say = folder, repeats, say
 
@@ -103,101 +103,92 @@ def efficiency(found: dict[int, list[Point]], processes: int) -> float:
     )
 
 
-def figures_of(name: str, found: dict[int, list[Point]]) -> dict[str, float]:
-    figures = {}
+def rows_of(found: dict[int, list[Point]], **settings: Setting) -> list[Row]:
+    """Per step, by the number of processes; times and messages of the slowest process."""
+    rows = []
     for processes, points in found.items():
-        point = median_of(points)
-        label = f"{name}.{processes}"
-        figures[f"figure {label}.particle_steps_per_s"] = point.particles / point.seconds
+        point, here = median_of(points), settings | {"ranks": processes}
+        rows.append(row("particle_steps_per_s", point.particles / point.seconds, "1/s", **here))
         if processes > 1:
-            figures[f"ratio {label}.efficiency"] = efficiency(found, processes)
-            figures[f"figure {label}.messages_per_step"] = point.messages
-            figures[f"figure {label}.bytes_per_step"] = point.bytes
-        for phase, seconds in point.phases.items():
-            if phase not in ("output", "steps"):
-                figures[f"figure {label}.microseconds_{phase}"] = 1e6 * seconds
-    return figures
+            rows += [row("efficiency", efficiency(found, processes), **here), *message_rows(point, here)]
+        rows += [row("microseconds_per_step", 1e6 * seconds, "us", **here, phase=phase)
+                 for phase, seconds in point.phases.items() if phase not in NO_PHASES]
+    return rows
 
 
-def measure(lab: Lab, processes: int, quick: bool) -> dict[str, float]:
-    counts = doubled(processes)
-    figures: dict[str, float] = {}
+def message_rows(point: Point, settings: dict[str, Setting]) -> list[Row]:
+    return [row("messages_per_step", point.messages, **settings), row("bytes_per_step", point.bytes, "B", **settings)]
+
+
+def over_processes(runner: Runner, processes: int, quick: bool) -> list[Row]:
+    """The same fluid on more of them, and more fluid on more of them."""
+    counts, rows = doubled(processes), []
     for name, sides in (QUICK_STRONG if quick else STRONG).items():
         steps = 10 if quick else {"2d": 20, "3d": 12}[name]
-        found = lab.rounds(f"strong {name}", {
-            count: lambda n=name, s=sides, k=steps, c=count: lab.once(f"strong {n}", s, k, Options(ranks=c)) for count in counts
+        found = runner.rounds(f"strong {name}", {
+            count: lambda n=name, s=sides, k=steps, c=count: runner.once(f"strong {n}", s, k, Options(ranks=c)) for count in counts
         })
         require_one_digest(point for points in found.values() for point in points)
-        figures |= figures_of(f"strong_{name}", found)
+        rows += rows_of(found, scaling="strong", fluid=name)
     side = QUICK_WEAK if quick else WEAK
-    found = lab.rounds("weak 2d", {
-        count: lambda c=count: lab.once("weak 2d", (side * c, side), 10 if quick else 150, Options(ranks=c)) for count in counts
+    found = runner.rounds("weak 2d", {
+        count: lambda c=count: runner.once("weak 2d", (side * c, side), 10 if quick else 150, Options(ranks=c)) for count in counts
     })
-    return figures | figures_of("weak_2d", found)
+    return rows + rows_of(found, scaling="weak", fluid="2d")
 
 
-def many_processes(lab: Lab, quick: bool) -> dict[str, float]:
+def many_processes(runner: Runner, quick: bool) -> list[Row]:
     """Digests on 64 processes are those of one: of a fluid in slabs and in squares, and of discs that lie across borders."""
     sides, steps = ((6 * MANY, 32), 4) if quick else ((16 * MANY, 256), 20)
     layouts = [Options(ranks=1), Options(ranks=MANY, domains=f"{MANY}x1")] + ([] if quick else [Options(ranks=MANY, domains="16x4")])
-    fluid = [lab.once("fluid", sides, steps, options) for options in layouts]
+    fluid = [runner.once("fluid", sides, steps, options) for options in layouts]
     require_one_digest(fluid)
     discs = []
     for ranks in (1, MANY):
         options = Options(ranks=ranks, steps=steps, overrides=(f"box.size=[22.0, {10.0 * MANY}]", f"body.0.array.count=[1, {MANY // 2}]",
                                                                "run.relax=0", "output.sample=1000000", "output.snapshot=1000000"))
-        discs.append(point_of("discs", run(PAPER, lab.folder / "discs", options)))
+        discs.append(point_of("discs", run(PAPER, runner.folder / "discs", options)))
     require_one_digest(discs)
-    lab.say(f"{MANY} processes: digests {fluid[0].digest} of a fluid, {discs[0].digest} of discs in it, those of one")
-    return {"figure many.processes": MANY, "figure many.runs_of_equal_digest": len(fluid) + len(discs)}
+    runner.say(f"{MANY} processes: digests {fluid[0].digest} of a fluid, {discs[0].digest} of discs in it, those of one")
+    return [row("runs_of_equal_digest", len(fluid) + len(discs), ranks=MANY)]
 
 
-def full_size(lab: Lab, processes: int, steps: int) -> dict[str, float]:
+def full_size(runner: Runner, processes: int, steps: int) -> list[Row]:
     """The paper's system: rate, and that its momentum is that of the forces to the last bit."""
-    finished = run(PAPER, lab.folder / "full_size", Options(ranks=processes, steps=steps, overrides=("output.snapshot=1000000",)))
+    finished = run(PAPER, runner.folder / "full_size", Options(ranks=processes, steps=steps, overrides=("output.snapshot=1000000",)))
     record, ledger = finished.record, finished.record["momentum"]
     for start, end, impulse in zip(ledger["start"], ledger["end"], ledger["impulse"], strict=True):
         if int(end) - int(start) != int(impulse):
             raise Broken(f"full size: momentum grew by {int(end) - int(start)} quanta, forces gave {impulse}")
     point = point_of("full size", finished)
-    shares = {phase: seconds / point.seconds for phase, seconds in point.phases.items()}
-    return {
-        "figure full_size.particles": record["particles"],
-        "figure full_size.solids": record["solids"],
-        "figure full_size.processes": processes,
-        "figure full_size.steps": steps,
-        "figure full_size.particle_steps_per_s": record["particle_steps_per_second"],
-        "figure full_size.messages_per_step": point.messages,
-        "figure full_size.bytes_per_step": point.bytes,
-    } | {f"ratio full_size.share_{phase}": share for phase, share in shares.items() if phase not in ("output", "steps")}
+    here: dict[str, Setting] = {"system": "paper", "ranks": processes}
+    return [
+        row("particles", record["particles"], **here),
+        row("solids", record["solids"], **here),
+        row("steps", steps, **here),
+        row("particle_steps_per_s", record["particle_steps_per_second"], "1/s", **here),
+        *message_rows(point, here),
+        *(row("share", seconds / point.seconds, **here, phase=phase)
+          for phase, seconds in point.phases.items() if phase not in NO_PHASES),
+    ]
+
+
+def measure(quick: bool, repeats: int, folder: Path, say: Callable[[str], None], processes: int) -> tuple[list[Row], str]:
+    """Figures, and the commit they are of. Throws Broken, SolverError."""
+    runner = Runner(folder, repeats, say)
+    rows = over_processes(runner, processes, quick) + many_processes(runner, quick)
+    if not quick:
+        rows += full_size(runner, processes, 100)
+    return rows, Run(folder / "fluid").record["commit"]
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--processes", type=at_least(2), default=max(2, cores()), metavar="N",
+                        help="the most, at least 2; default: the cores there are")
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="python3 -m bench.scaling", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="small fluids, which take seconds: to see that all works")
-    parser.add_argument("--processes", type=int, default=cores(),
-                        help="the most, at least 2; default: the cores there are")
-    parser.add_argument("--repeats", type=int, help="rounds, at least 1; default 5, with --quick 1")
-    parser.add_argument("--json", type=Path, help="also keep the figures in this file")
-    parser.add_argument("--out", type=Path, help="folder of the runs (default: one that is removed)")
-    options = parser.parse_args()
-    repeats = options.repeats if options.repeats is not None else (1 if options.quick else 5)
-    if repeats < 1 or options.processes < 2:
-        parser.error(f"--repeats {repeats} --processes {options.processes}: must be at least 1 and 2")
-    with tempfile.TemporaryDirectory() as scratch:
-        lab = Lab(options.out or Path(scratch), repeats, lambda text: print(text, file=sys.stderr, flush=True))
-        try:
-            figures = measure(lab, options.processes, options.quick) | many_processes(lab, options.quick)
-            if not options.quick:
-                figures |= full_size(lab, options.processes, 100)
-            commit = Run(lab.folder / "fluid").record["commit"]
-        except (Broken, SolverError) as error:
-            print(f"scaling: {error}", file=sys.stderr)
-            return 1
-    command = "python3 -m bench.scaling" + (" --quick" if options.quick else "")
-    keep(figures, f"{command} --processes {options.processes} --repeats {repeats}", commit, options.json)
-    return 0
+    return run_benchmark("scaling", __doc__, measure, add_options, rounds=5)
 
 
 if __name__ == "__main__":

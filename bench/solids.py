@@ -1,11 +1,11 @@
 """What solids cost: their share of a step, and a step beside one of the same box full of fluid.
 
-    python3 -m bench.solids [--quick] [--repeats N] [--json FILE] [--out DIR]
+    python3 -m bench.solids [--quick] [--repeats N] [--lab DIR] [--out DIR]
 
 The cost of solids is what a fluid has not: placing FPs, their densities and loads, contacts, motion of solids (phase
 `solids`), and copies of solids with their messages (phase `copies`). Pairs of PPs and FPs (phase `frozen_pairs`) stand beside
 it: without the solid there would be pairs of PPs in their place. Runs alternate; a figure is a median over rounds, and a ratio
-the median of ratios within one round. Prints a line a figure, `ratio NAME VALUE` or `figure NAME VALUE`. Ends with 1 where a
+the median of ratios within one round. Prints a line a figure: name, settings, value, unit. Ends with 1 where a
 measurement is broken (a run that failed, digests that differ between one process and two), never because the machine is slow.
 """
 
@@ -16,7 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from bench.meter import Broken, Meter, Speed, median_rate, median_ratio, run_benchmark
+from bench.meter import Broken, Meter, Row, Speed, median_rate, median_ratio, row, run_benchmark
 from bench.speed import steps_for
 from reference.periodic_fluid import Fluid
 from verification.codes.mappm import Options, run
@@ -149,36 +149,41 @@ def rounds_of(meter: Meter, name: str, scene: Suspension, steps: int, folder: Pa
     return found
 
 
-def figures_of(name: str, scene: Suspension, found: dict[str, list[Cost]]) -> dict[str, float]:
+def rows_of(name: str, scene: Suspension, found: dict[str, list[Cost]]) -> list[Row]:
+    """Of solids in a fluid their shares are of one process; the part `solids` holds the phases of COST."""
     with_solids = found["solids_1"]
     solids = with_solids[0].solids
-    figures = {f"figure {name}.solids": solids}
+    rows = [row("solids", solids, suspension=name)]
     if not scene.with_fluid:
-        for ranks in (1, 2):
-            figures[f"figure {name}.us_per_solid_and_step_{ranks}"] = 1e6 / median_rate(found[f"solids_{ranks}"])
-        return figures
-    figures[f"figure {name}.pps"] = round(with_solids[0].rate * with_solids[0].seconds_a_step)
-    figures[f"ratio {name}.share_solids"] = statistics.median(cost.share(*COST) for cost in with_solids)
-    figures[f"ratio {name}.share_frozen_pairs"] = statistics.median(cost.share("frozen_pairs") for cost in with_solids)
-    figures[f"figure {name}.us_per_solid_and_step"] = statistics.median(
-        1e6 * cost.share(*COST) * cost.seconds_a_step / solids for cost in with_solids)
+        return rows + [row("us_per_solid_and_step", 1e6 / median_rate(found[f"solids_{ranks}"]), "us", suspension=name, ranks=ranks)
+                       for ranks in (1, 2)]
+    for part, phases in {"solids": COST, "frozen_pairs": ("frozen_pairs",)}.items():
+        share = statistics.median(cost.share(*phases) for cost in with_solids)
+        rows.append(row("share", share, suspension=name, ranks=1, part=part))
+    time = statistics.median(1e6 * cost.share(*COST) * cost.seconds_a_step / solids for cost in with_solids)
+    return [*rows, row("pps", round(with_solids[0].rate * with_solids[0].seconds_a_step), suspension=name),
+            row("us_per_solid_and_step", time, "us", suspension=name, ranks=1), *rows_beside_fluid(name, found)]
+
+
+def rows_beside_fluid(name: str, found: dict[str, list[Cost]]) -> list[Row]:
+    """A PP, and a step, over those of the same box full of fluid."""
+    rows = []
     for ranks in (1, 2):
-        costs = found[f"solids_{ranks}"], found[f"fluid_{ranks}"]
-        figures[f"ratio {name}.cost_per_pp_over_fluid_{ranks}"] = median_ratio(costs[1], costs[0])
-        figures[f"ratio {name}.step_over_fluid_{ranks}"] = statistics.median(
-            solid.seconds_a_step / fluid.seconds_a_step for solid, fluid in zip(*costs, strict=True))
-    return figures
+        solids, fluid = found[f"solids_{ranks}"], found[f"fluid_{ranks}"]
+        steps = statistics.median(one.seconds_a_step / other.seconds_a_step for one, other in zip(solids, fluid, strict=True))
+        rows += [row("cost_per_pp_over_fluid", median_ratio(fluid, solids), suspension=name, ranks=ranks),
+                 row("step_over_fluid", steps, suspension=name, ranks=ranks)]
+    return rows
 
 
-def measure(quick: bool, repeats: int, folder: Path,
-            say: Callable[[str], None]) -> tuple[dict[str, float], str]:
-    """Figures by "ratio NAME" or "figure NAME", and the commit they are of. Throws Broken, SolverError."""
+def measure(quick: bool, repeats: int, folder: Path, say: Callable[[str], None]) -> tuple[list[Row], str]:
+    """Figures, and the commit they are of. Throws Broken, SolverError."""
     meter = Meter(repeats, say)
-    figures = {}
+    rows = []
     for name, scene in (QUICK_SUSPENSIONS if quick else SUSPENSIONS).items():
         found = rounds_of(meter, name, scene, steps_for(100_000, quick), folder)
-        figures |= figures_of(name, scene, found)
-    return figures, Run(folder / "mappm").record["commit"]
+        rows += rows_of(name, scene, found)
+    return rows, Run(folder / "mappm").record["commit"]
 
 
 def main() -> int:

@@ -1,6 +1,6 @@
 """How fast the solver is: beside the SPH of LIGGGHTS and of LAMMPS on the same fluid, on two processes, and from few to many PPs.
 
-    python3 -m bench.speed [--quick] [--repeats N] [--json FILE] [--out DIR]
+    python3 -m bench.speed [--quick] [--repeats N] [--lab DIR] [--out DIR]
 
 The fluid is that of the case sph_peer with nu = .01 c h: a lattice with a shear wave, c = 20 U, 39 neighbours a particle in the
 plane and 77 in space, the same for all codes. A code that takes longer steps needs fewer of them. So each goes at its own largest
@@ -8,7 +8,7 @@ useful step, which is found first (bench/largest_step.py), and what counts is fl
 particle-steps a second and core; h is half the range of the pair law. MaPPM also runs without transport velocity, a term
 that the others do not have. These run with the skin of their lists of neighbours that is quickest at their step. Runs
 alternate, so that what else the machine does meets all of them; a figure is a median, and a ratio the median of ratios within
-one round. Prints a line a figure, `ratio NAME VALUE` or `figure NAME VALUE`. Ends with 1 where a measurement is broken (a run
+one round. Prints a line a figure: name, settings, value, unit. Ends with 1 where a measurement is broken (a run
 that failed, digests that differ between one process and two), never because the machine is slow, and with 77 where LIGGGHTS or
 LAMMPS is not installed: its rows are SKIPPED.
 """
@@ -20,7 +20,7 @@ from pathlib import Path
 
 from bench.codes import MAPPM, WITHOUT_TRANSPORT, Code, own_speed, peers
 from bench.largest_step import VISCOSITY, Found, largest_step
-from bench.meter import Broken, Meter, Speed, median_rate, median_ratio, run_benchmark
+from bench.meter import Broken, Meter, Row, Speed, median_rate, median_ratio, row, run_benchmark
 from reference.periodic_fluid import Fluid
 from verification.protocol.run import Run
 
@@ -29,8 +29,7 @@ PROCESSES = (1, 2)
 PEER_SHARE = 2 / 3  # of the steps of MaPPM, which is quicker
 FLUIDS = {"2d_39": (2, 400), "3d_77": (3, 54)}  # dimension, particles along a side: about 160 000
 QUICK_FLUIDS = {"2d_39": (2, 64), "3d_77": (3, 16)}
-SIZES = {"1e4": 100, "1e5": 316, "1e6": 1000}  # in the plane: particles along a side
-QUICK_SIZES = {"1e3": 32, "1e4": 100}
+SIZES, QUICK_SIZES = (100, 316, 1000), (32, 100)  # in the plane: particles along a side
 
 
 def scene_of(dimension: int, sides: tuple[int, ...]) -> tuple[str, ...]:
@@ -49,48 +48,42 @@ def steps_for(particles: int, quick: bool) -> int:
     return 10 if quick else max(80, min(1600, 16_000_000 // particles))
 
 
-def prefix_of(code: Code) -> str:
-    """Before the names of its figures."""
-    return "" if code is MAPPM else f"{code.name}_"
-
-
-def step_figures(name: str, code: Code, found: Found) -> dict[str, float]:
+def step_rows(fluid: str, code: Code, found: Found) -> list[Row]:
     """The decays are those at small steps, over the exact ones: all codes must have about the same flow."""
-    prefix = f"fluid_{name}.{prefix_of(code)}"
-    figures = {f"figure {prefix}largest_step": found.step}
-    return figures | {f"ratio {prefix}{flow}_decay_over_exact": rate
-                      for flow, rate in zip(("wave", "vortices"), found.rates, strict=True)}
+    decays = zip(("wave", "vortices"), found.rates, strict=True)
+    return [row("largest_step", found.step, "h/c", fluid=fluid, code=code.name),
+            *(row("decay_over_exact", rate, fluid=fluid, code=code.name, flow=flow) for flow, rate in decays)]
 
 
-def rate_figures(name: str, code: Code, step: float, speeds: dict[int, list[Speed]]) -> dict[str, float]:
+def rate_rows(fluid: str, code: Code, step: float, speeds: dict[int, list[Speed]]) -> list[Row]:
     """speeds: by the number of processes."""
-    prefix, figures = f"fluid_{name}.{prefix_of(code)}", {}
+    rows = []
     for ranks, found in speeds.items():
         rate = median_rate(found)
-        figures[f"figure {prefix}particle_steps_per_s_{ranks}"] = rate
-        figures[f"figure {prefix}flow_time_per_core_s_{ranks}"] = step * rate / ranks
-    return figures
+        rows += [row("particle_steps_per_s", rate, "1/s", fluid=fluid, code=code.name, ranks=ranks),
+                 row("flow_time_per_core_s", step * rate / ranks, "h/c/s", fluid=fluid, code=code.name, ranks=ranks)]
+    return rows
 
 
-def ratio_figures(name: str, code: Code, peer: Code, steps: dict[Code, float],
-                  found: dict[tuple[Code, int], list[Speed]]) -> dict[str, float]:
+def ratio_rows(fluid: str, code: Code, peer: Code, steps: dict[Code, float], found: dict[tuple[Code, int], list[Speed]]) -> list[Row]:
     """In particle-steps a second and in flow time a core-second."""
-    prefix, figures = f"fluid_{name}.{prefix_of(code)}", {}
+    rows = []
     for ranks in PROCESSES:
+        settings = {"fluid": fluid, "code": code.name, "peer": peer.name, "ranks": ranks}
         ratio = median_ratio(found[code, ranks], found[peer, ranks])
-        figures[f"ratio {prefix}over_{peer.name}_{ranks}"] = ratio
-        figures[f"ratio {prefix}flow_time_over_{peer.name}_{ranks}"] = ratio * steps[code] / steps[peer]
-    return figures
+        rows += [row("rate_over_peer", ratio, **settings),
+                 row("flow_time_over_peer", ratio * steps[code] / steps[peer], **settings)]
+    return rows
 
 
-def share_figures(name: str, speeds: list[Speed]) -> dict[str, float]:
+def share_rows(fluid: str, speeds: list[Speed]) -> list[Row]:
     """Of the phases of a step."""
     phases = [speed.phases for speed in speeds]
-    return {f"ratio fluid_{name}.share_{phase}": statistics.median(seconds[phase] / sum(seconds.values()) for seconds in phases)
-            for phase in phases[0]}
+    return [row("share", statistics.median(seconds[phase] / sum(seconds.values()) for seconds in phases),
+                fluid=fluid, code=MAPPM.name, ranks=1, phase=phase) for phase in phases[0]]
 
 
-def of_fluid(name: str, dimension: int, side: int, meter: Meter, quick: bool, folder: Path) -> dict[str, float]:
+def of_fluid(name: str, dimension: int, side: int, meter: Meter, quick: bool, folder: Path) -> list[Row]:
     own, others = [MAPPM, WITHOUT_TRANSPORT], peers()[0]
     codes: list[Code] = [*own, *others]
     largest = {code: largest_step(code, dimension, quick, folder, meter.say) for code in codes}
@@ -104,48 +97,48 @@ def of_fluid(name: str, dimension: int, side: int, meter: Meter, quick: bool, fo
     found = meter.rounds(f"fluid {name}", runs)
     if any(found[code, 1][0].digest != found[code, 2][0].digest for code in own):
         raise Broken(f"fluid {name}: the digest on two processes is not that on one")
-    figures: dict[str, float] = {}
+    rows: list[Row] = []
     for code in codes:
-        figures |= step_figures(name, code, largest[code])
-        figures |= rate_figures(name, code, steps[code], {ranks: found[code, ranks] for ranks in PROCESSES})
+        rows += step_rows(name, code, largest[code])
+        rows += rate_rows(name, code, steps[code], {ranks: found[code, ranks] for ranks in PROCESSES})
     for code in own:
         for peer in others:
-            figures |= ratio_figures(name, code, peer, steps, found)
-    figures[f"ratio fluid_{name}.two_processes_over_one"] = median_ratio(found[MAPPM, 2], found[MAPPM, 1])
-    return figures | share_figures(name, found[MAPPM, 1])
+            rows += ratio_rows(name, code, peer, steps, found)
+    rows.append(row("two_processes_over_one", median_ratio(found[MAPPM, 2], found[MAPPM, 1]), fluid=name, code=MAPPM.name))
+    return rows + share_rows(name, found[MAPPM, 1])
 
 
-def against_peers(meter: Meter, quick: bool, folder: Path) -> dict[str, float]:
-    figures: dict[str, float] = {}
+def against_peers(meter: Meter, quick: bool, folder: Path) -> list[Row]:
+    rows: list[Row] = []
     for name, (dimension, side) in (QUICK_FLUIDS if quick else FLUIDS).items():
-        figures |= of_fluid(name, dimension, side, meter, quick, folder)
-    return figures
+        rows += of_fluid(name, dimension, side, meter, quick, folder)
+    return rows
 
 
-def over_sizes(meter: Meter, quick: bool, folder: Path) -> dict[str, float]:
+def over_sizes(meter: Meter, quick: bool, folder: Path) -> list[Row]:
     """Cost of a particle on one process over the number of particles, and weak scaling: twice the fluid on two."""
-    sizes = QUICK_SIZES if quick else SIZES
-    runs = {}
-    for name, side in sizes.items():
+    sides = QUICK_SIZES if quick else SIZES
+    runs: dict[tuple[int, int], Callable[[], Speed]] = {}
+    for side in sides:
         steps = steps_for(side * side, quick)
-        for ranks in (1, 2):
+        for ranks in PROCESSES:
             overrides = scene_of(2, (side * ranks, side))
-            runs[f"{name}_{ranks}"] = lambda o=overrides, s=steps, r=ranks: own_speed(o, s, r, folder)
+            runs[side, ranks] = lambda o=overrides, s=steps, r=ranks: own_speed(o, s, r, folder)
     found = meter.rounds("sizes", runs)
-    figures = {}
-    for name in sizes:
-        figures[f"figure size_{name}.particle_steps_per_s"] = median_rate(found[f"{name}_1"])
-        figures[f"ratio size_{name}.weak_efficiency_2"] = median_ratio(found[f"{name}_2"], found[f"{name}_1"]) / 2
-    rates = [median_rate(found[f"{name}_1"]) for name in sizes]
-    figures["ratio sizes.cost_dearest_over_cheapest"] = max(rates) / min(rates)
-    return figures
+    rows = []
+    for side in sides:
+        weak = median_ratio(found[side, 2], found[side, 1]) / 2
+        rows += [row("particle_steps_per_s", median_rate(found[side, 1]), "1/s", particles=side * side, code=MAPPM.name, ranks=1),
+                 row("weak_efficiency", weak, particles=side * side, code=MAPPM.name, ranks=2)]
+    rates = [median_rate(found[side, 1]) for side in sides]
+    return [*rows, row("cost_dearest_over_cheapest", max(rates) / min(rates), code=MAPPM.name, ranks=1)]
 
 
-def measure(quick: bool, repeats: int, folder: Path, say: Callable[[str], None]) -> tuple[dict[str, float], str]:
-    """Figures by "ratio NAME" or "figure NAME", and where they come from. Throws Broken, SolverError, Failed."""
+def measure(quick: bool, repeats: int, folder: Path, say: Callable[[str], None]) -> tuple[list[Row], str]:
+    """Figures, and the commit they are of. Throws Broken, SolverError, Failed."""
     meter = Meter(repeats, say)
-    figures = against_peers(meter, quick, folder) | over_sizes(meter, quick, folder)
-    return figures, Run(folder / "mappm").record["commit"]
+    rows = against_peers(meter, quick, folder) + over_sizes(meter, quick, folder)
+    return rows, Run(folder / "mappm").record["commit"]
 
 
 def main() -> int:

@@ -163,6 +163,23 @@ def report(arguments: argparse.Namespace) -> int:
     return draw_report(laboratory, arguments.tier, arguments.page, arguments.publish)
 
 
+def study(arguments: argparse.Namespace) -> int:
+    """Lists the studies, or runs what is missing of one and prints its table."""
+    from verification.studies.study import all_studies, find_study, lines_of, read_study, results_of, run_study
+
+    if arguments.name is None:
+        for found in map(read_study, all_studies()):
+            print(f"{found.name:28} {len(found.settings) * len(found.codes):4} runs  {textwrap.shorten(found.purpose, 90, placeholder=' ...')}")
+        return 0
+    from verification.store.laboratory import Laboratory
+
+    found, laboratory = find_study(arguments.name), Laboratory(arguments.out)
+    if not arguments.only_show:
+        run_study(laboratory, found, arguments.jobs, _say)
+    print("\n".join(lines_of(found, results_of(laboratory, found))))
+    return 0
+
+
 def _ranks(text: str) -> list[int]:
     ranks = [int(word) for word in text.split(",")]
     if min(ranks) < 1 or len(set(ranks)) != len(ranks):
@@ -223,6 +240,12 @@ def _parser() -> argparse.ArgumentParser:
     report.add_argument("--only-draw", action="store_true", help="run nothing")
     _add_out(report)
 
+    many = commands.add_parser("study", help="run what is missing of a study and print its table; without a name, list the studies")
+    many.add_argument("name", nargs="?", help="CASE.NAME")
+    many.add_argument("--jobs", type=int, default=cores(), metavar="K", help="runs at a time (default: a core each)")
+    many.add_argument("--only-show", action="store_true", help="run nothing")
+    _add_out(many)
+
     bits = commands.add_parser("compare-bits", help="compare digests of the serial reference and the parallel solver")
     bits.add_argument("scene", type=Path)
     bits.add_argument("--ranks", type=_ranks, default=[1, 2], metavar="1,2,4", help="default 1,2")
@@ -256,6 +279,8 @@ def _called(arguments: argparse.Namespace) -> int:
             return use_store(arguments)
         case "report":
             return report(arguments)
+        case "study":
+            return study(arguments)
 
 
 def main() -> int:

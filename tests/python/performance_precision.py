@@ -1,33 +1,25 @@
 """The benchmark of precision as a whole, on small fluids: that it measures, not what. Slowness fails nothing here."""
 
 import json
-import math
 import shlex
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from benchmarks import assert_drawn, measured
 
 from bench import precision
+from bench.meter import row
 from verification.codes.mappm import build_folder
 from verification.report.speed_charts import precisions
 
-ROOT = Path(__file__).parents[2]
 
-
-def test_it_prints_and_keeps_figures_of_speed_and_accuracy(tmp_path: Path) -> None:
-    kept = tmp_path / "precision.json"
-    done = subprocess.run([sys.executable, "-m", "bench.precision", "--quick", "--json", str(kept), "--out", str(tmp_path)],
-                          cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    figures = json.loads(kept.read_text())["figures"]
-    assert dict(line.rsplit(" ", 1) for line in done.stdout.splitlines()).keys() == figures.keys()
-    assert all(math.isfinite(value) and value > 0 for value in figures.values())
-    case = precision.CASES[0]
-    assert figures[f"ratio {case}.level_0.single_off_double"] < figures[f"ratio {case}.level_0.double_off_the_answer"]
-    precisions(figures, tmp_path / "precision.svg")
-    assert (tmp_path / "precision.svg").stat().st_size > 1000
+def test_it_prints_and_enters_figures_of_speed_and_accuracy(tmp_path: Path) -> None:
+    figures, _ = measured("precision", tmp_path / "lab", "--out", str(tmp_path / "runs"))
+    assert all(row.value > 0 for row in figures.rows)
+    coarsest = {"case": precision.CASES[0], "level": 0}
+    assert figures.value("single_off_double", **coarsest) < figures.value("double_off_the_answer", **coarsest)
+    assert_drawn(precisions, figures, tmp_path)
 
 
 def test_a_digest_that_depends_on_processes_gives_no_figure(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -42,10 +34,10 @@ def test_a_digest_that_depends_on_processes_gives_no_figure(monkeypatch: pytest.
 def test_sums_in_floating_point_are_read_or_left_out(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     program = tmp_path / "bench-pair_numbers"
     monkeypatch.setattr(precision, "FLOATING_SUMS", program)
-    assert precision.of_exactness() == {}
-    program.write_text("#!/bin/sh\necho figure a.b 3\necho ratio a.c 1.5\n")
+    assert precision.of_exactness() == []
+    program.write_text("#!/bin/sh\necho a round\necho ratio exactness.fluid_2d_39.over 1.5\n")
     program.chmod(0o755)
-    assert precision.of_exactness() == {"ratio a.c": 1.5}
+    assert precision.of_exactness() == [row("over", 1.5, fluid="2d_39", part="pass")]
     program.write_text("#!/bin/sh\necho ratio a.c 1.5\nexit 3\n")
     with pytest.raises(precision.Broken, match="ended with 3"):
         precision.of_exactness()

@@ -1,49 +1,38 @@
 """The benchmarks of scaling and of the cost model as a whole, on small fluids: that they measure, not what."""
 
-import json
 import math
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from benchmarks import assert_drawn, benchmark, measured
 
 from bench import cost_model, scaling
 from bench.meter import Broken
 from bench.scaling import Point
 from verification.report.speed_charts import costs, scalings
 
-ROOT = Path(__file__).parents[2]
-
-
-def measured(module: str, *options: str, kept: Path) -> dict[str, float]:
-    done = subprocess.run([sys.executable, "-m", module, "--quick", "--json", str(kept), *options], cwd=ROOT, capture_output=True,
-                          text=True)
-    assert done.returncode == 0, done.stderr
-    figures = json.loads(kept.read_text())["figures"]
-    assert [line.rsplit(" ", 1)[0] for line in done.stdout.splitlines()] == list(figures)
-    assert all(math.isfinite(value) for value in figures.values())
-    return figures
-
 
 def test_scaling_measures_and_64_processes_end_as_one(tmp_path: Path) -> None:
-    figures = measured("bench.scaling", "--processes", "2", kept=tmp_path / "scaling.json")
-    assert figures["figure many.processes"] == 64
-    assert figures["figure many.runs_of_equal_digest"] == 4
-    assert figures["figure strong_2d.2.messages_per_step"] == (2 * 10 + 2 * 2) / 10  # states and densities, in 10 steps and 2 samples
-    assert figures["ratio weak_2d.2.efficiency"] > 0
-    scalings(figures, tmp_path / "scaling.svg")
-    assert (tmp_path / "scaling.svg").stat().st_size > 1000
+    figures, _ = measured("scaling", tmp_path, "--processes", "2")
+    assert figures.value("runs_of_equal_digest", ranks=64) == 4
+    messages = (2 * 10 + 2 * 2) / 10  # states and densities, in 10 steps and 2 samples
+    assert figures.value("messages_per_step", scaling="strong", fluid="2d", ranks=2) == messages
+    assert figures.value("efficiency", scaling="weak", fluid="2d", ranks=2) > 0
+    assert "--processes 2" in figures.made.command
+    assert_drawn(scalings, figures, tmp_path)
+
+
+def test_one_process_is_too_few_to_scale() -> None:
+    done = benchmark("scaling", "--processes", "1")
+    assert done.returncode == 2 and "--processes: 1: must be a number of at least 2" in done.stderr
 
 
 def test_the_cost_model_is_fitted_and_applied(tmp_path: Path) -> None:
-    figures = measured("bench.cost_model", kept=tmp_path / "cost_model.json")
-    assert figures["figure nanoseconds_per_particle"] > 0
-    assert figures["ratio paper.1.efficiency"] == 1
-    times = [value for name, value in figures.items() if name.startswith("figure paper.") and name.endswith("per_step")]
-    assert len(times) == len(cost_model.PAPER_PROCESSES)
-    costs(figures, tmp_path / "costs.svg")
-    assert (tmp_path / "costs.svg").stat().st_size > 1000
+    figures, _ = measured("cost_model", tmp_path)
+    assert figures.value("nanoseconds_per_particle") > 0
+    assert figures.value("efficiency", system="paper", ranks=1) == 1
+    assert len(figures.where("microseconds_per_step", system="paper")) == len(cost_model.PAPER_PROCESSES)
+    assert_drawn(costs, figures, tmp_path)
 
 
 def test_digests_that_differ_are_broken() -> None:

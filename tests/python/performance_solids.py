@@ -1,34 +1,24 @@
 """The benchmark of solids as a whole, on small suspensions: that it measures, not what. Slowness fails nothing here."""
 
-import json
-import math
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from benchmarks import assert_drawn, measured
 
 from bench import solids
+from bench.meter import entered
 from bench.solids import Cost
 from verification.report.solid_charts import costs_of_solids
+from verification.store.store import Made
 
-ROOT = Path(__file__).parents[2]
 
-
-def test_it_prints_and_keeps_figures_of_every_suspension(tmp_path: Path) -> None:
-    kept = tmp_path / "solids.json"
-    done = subprocess.run([sys.executable, "-m", "bench.solids", "--quick", "--json", str(kept), "--out", str(tmp_path)],
-                          cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    figures = json.loads(kept.read_text())["figures"]
-    lines = dict(line.rsplit(" ", 1) for line in done.stdout.splitlines())
-    assert lines.keys() == figures.keys()
-    assert all(math.isfinite(value) and value > 0 for value in figures.values())
-    assert all(value < 1 for name, value in figures.items() if ".share_" in name)
-    named = {name.split()[1].split(".")[0] for name in figures}
-    assert named == solids.SUSPENSIONS.keys() == solids.QUICK_SUSPENSIONS.keys()
-    costs_of_solids(figures, tmp_path / "solids.svg")
-    assert (tmp_path / "solids.svg").stat().st_size > 1000
+def test_it_prints_and_enters_figures_of_every_suspension(tmp_path: Path) -> None:
+    figures, _ = measured("solids", tmp_path / "lab", "--out", str(tmp_path / "runs"))
+    assert all(row.value > 0 for row in figures.rows)
+    assert all(row.value < 1 for row in figures.where("share"))
+    assert figures.settings("suspension") == sorted(solids.SUSPENSIONS) == sorted(solids.QUICK_SUSPENSIONS)
+    assert_drawn(costs_of_solids, figures, tmp_path)
 
 
 def test_solids_in_contact_touch_from_the_first_step(tmp_path: Path) -> None:
@@ -44,9 +34,10 @@ def test_shares_are_of_all_phases() -> None:
     cost = Cost(1.0, "", {"solids": 1.0, "copies": 2.0, "frozen_pairs": 3.0, "pairs": 6.0}, 4, 0.5)
     assert cost.share("frozen_pairs") == 0.25
     scene = solids.SUSPENSIONS["dense_2d"]
-    figures = solids.figures_of("dense_2d", scene, {f"{kind}_{ranks}": [cost] for kind in ("solids", "fluid") for ranks in (1, 2)})
-    assert figures["ratio dense_2d.share_solids"] == 0.25
-    assert figures["figure dense_2d.us_per_solid_and_step"] == pytest.approx(0.25 * 0.5 / 4 * 1e6)
+    rows = solids.rows_of("dense_2d", scene, {f"{kind}_{ranks}": [cost] for kind in ("solids", "fluid") for ranks in (1, 2)})
+    figures = entered("solids", rows, Made("", "", ""))
+    assert figures.value("share", suspension="dense_2d", ranks=1, part="solids") == 0.25
+    assert figures.value("us_per_solid_and_step", suspension="dense_2d", ranks=1) == pytest.approx(0.25 * 0.5 / 4 * 1e6)
 
 
 def test_a_run_that_fails_is_no_figure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
@@ -56,4 +47,4 @@ def test_a_run_that_fails_is_no_figure(tmp_path: Path, monkeypatch: pytest.Monke
     assert solids.main() == 1
     captured = capsys.readouterr()
     assert "body.0.radius" in captured.err
-    assert "ratio" not in captured.out
+    assert not captured.out

@@ -1,47 +1,44 @@
 """The benchmark of speed as a whole, on small fluids: that it measures, not what. Slowness fails nothing here."""
 
-import json
 import math
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from benchmarks import assert_drawn, measured
 
 from bench import codes, meter, speed
 from bench.codes import peers
 from bench.meter import Broken, Meter, Speed
 from verification.report.speed_charts import speeds
+from verification.store.figures import Figures
 
-ROOT = Path(__file__).parents[2]
 
-
-def test_it_prints_and_keeps_ratios_of_finished_runs(tmp_path: Path) -> None:
-    kept = tmp_path / "speed.json"
+def test_it_prints_and_enters_ratios_of_finished_runs(tmp_path: Path) -> None:
     installed, missing = peers()
-    done = subprocess.run([sys.executable, "-m", "bench.speed", "--quick", "--json", str(kept), "--out", str(tmp_path)],
-                          cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == (speed.SKIPPED_CODE if missing else 0), done.stderr
+    code = speed.SKIPPED_CODE if missing else 0
+    figures, done = measured("speed", tmp_path / "lab", "--out", str(tmp_path / "runs"), code=code)
     assert done.stderr.count("rows SKIPPED") == len(missing)
-    table = json.loads(kept.read_text())
-    lines = dict(line.rsplit(" ", 1) for line in done.stdout.splitlines())
-    assert lines.keys() == table["figures"].keys()
-    assert all(math.isfinite(value) and value > 0 for value in table["figures"].values())
-    shares = [value for name, value in table["figures"].items() if name.startswith("ratio fluid_2d_39.share_")]
-    assert math.isclose(sum(shares), 1, rel_tol=1e-9)
-    names = {peer.name for peer in installed}
-    for peer in ("liggghts", "lammps"):
-        for ratio in (f"over_{peer}_1", f"flow_time_over_{peer}_2", f"without_transport_over_{peer}_2"):
-            assert (f"ratio fluid_3d_77.{ratio}" in table["figures"]) == (peer in names)
-    for code in ("", "without_transport_", *(f"{name}_" for name in names)):
-        step = table["figures"][f"figure fluid_2d_39.{code}largest_step"]
-        assert 0.05 <= step <= 3.2
-        for ranks in (1, 2):
-            rate = table["figures"][f"figure fluid_2d_39.{code}particle_steps_per_s_{ranks}"]
-            flow_time = table["figures"][f"figure fluid_2d_39.{code}flow_time_per_core_s_{ranks}"]
-            assert math.isclose(flow_time, step * rate / ranks, rel_tol=1e-12)
-    speeds(table["figures"], tmp_path / "speed.svg")
-    assert (tmp_path / "speed.svg").stat().st_size > 1000
+    assert all(row.value > 0 for row in figures.rows)
+    shares = figures.where("share", fluid="2d_39", code="mappm")
+    assert math.isclose(sum(row.value for row in shares), 1, rel_tol=1e-9)
+    names = sorted(peer.name for peer in installed)
+    assert figures.settings("peer") == names
+    assert figures.settings("code") == sorted([*names, "mappm", "without_transport"])
+    for name in ("rate_over_peer", "flow_time_over_peer"):
+        assert len(figures.where(name, fluid="3d_77", ranks=2)) == 2 * len(names)
+    for code in figures.settings("code"):
+        assert_flow_time_is_steps_times_their_length(figures, code)
+    assert_drawn(speeds, figures, tmp_path)
+
+
+def assert_flow_time_is_steps_times_their_length(figures: Figures, code: str) -> None:
+    step = figures.value("largest_step", fluid="2d_39", code=code)
+    assert 0.05 <= step <= 3.2
+    for ranks in (1, 2):
+        rate = figures.value("particle_steps_per_s", fluid="2d_39", code=code, ranks=ranks)
+        flow_time = figures.value("flow_time_per_core_s", fluid="2d_39", code=code, ranks=ranks)
+        assert math.isclose(flow_time, step * rate / ranks, rel_tol=1e-12)
 
 
 def test_rounds_that_end_with_other_digests_are_broken() -> None:
@@ -63,4 +60,4 @@ def test_a_run_that_fails_is_no_figure(tmp_path: Path, monkeypatch: pytest.Monke
     assert speed.main() == 1
     captured = capsys.readouterr()
     assert "fluid.rcut" in captured.err
-    assert "ratio" not in captured.out
+    assert not captured.out
