@@ -51,6 +51,7 @@ MEASURE = '''
 """Mean velocity at the end over that at the start."""
 
 from verification.measures.curve import Chart, Curve
+from verification.measures.measures import Measures, by_name
 from verification.protocol.quantity import Measured
 
 
@@ -60,6 +61,9 @@ def mean_velocity(run):
 
 def curves(run):
     return [Chart("velocity", "time", "u", (Curve("measured", run.series["time"], run.series["fluid_velocity_x"]),))]
+
+
+MEASURES = Measures(observables=by_name(mean_velocity), charts=curves)
 '''
 
 
