@@ -16,7 +16,7 @@ from verification.report.history import changes
 from verification.store.store import Ledger
 from verification.suite.case import Observable, Vary
 from verification.suite.judge import CONVERGING, CORRECT, NOT_CONVERGING, OPEN, STALLED, WRONG, Outcome, _varied
-from verification.suite.ladder import converge, error_order, observed_order
+from verification.suite.ladder import converge, error_order, extrapolated, observed_order
 from verification.suite.manifest import read_cases
 from verification.suite.result import Exactness, exactness
 from verification.suite.runner import Job, jobs_of
@@ -51,6 +51,15 @@ def test_levels_that_swing_have_no_order_and_a_wider_index() -> None:
 
 def test_two_levels_give_an_index_without_order() -> None:
     assert converge([0.2, 0.1], [50.2, 50.1]).gci == pytest.approx(0.3)
+
+
+def test_a_level_that_is_no_number_has_no_order_and_no_limit() -> None:
+    h, values = [0.4, 0.2, 0.1], [50.3, math.nan, 50.1]
+    assert math.isnan(error_order(h, values)) and math.isnan(observed_order(h, values))
+    assert math.isnan(extrapolated(h, values).value) and math.isnan(converge(h, values).gci)
+    given = Observable("drag", "F", 50.0, 0.0, "nobody", goal=0.1, order=(1.5, 2.5))
+    levels = tuple(Measured(value, 0.0) for value in values)
+    assert not Outcome(given, levels[-1], {"resolution": 5.0}, tuple(h), levels).holds
 
 
 def outcome(value: float, sources: dict[str, float], observable: Observable = GIVEN, **more) -> Outcome:
