@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from types import ModuleType
 
-from verification.codes.code import find_code
+from verification.codes.code import Code, find_code
 from verification.measures.measures import Measure, measures_in
 from verification.measures.observables import OBSERVABLES
 from verification.protocol.run import Run
@@ -14,6 +14,8 @@ from verification.suite.case import Case
 from verification.suite.judge import CORRECT, Outcome
 from verification.suite.manifest import find_case
 from verification.suite.result import Way, run_with
+
+ANY_CODE = Code("any", "Any", (), "1", frozenset({"fluid"}))  # for what only asks that there is one
 
 
 def judged(name: str, folder: Path, *overrides: str) -> tuple[Run, dict[str, Outcome]]:

@@ -1,6 +1,7 @@
 """A code of a few lines for tests of what runs codes and keeps what they leave: a fluid that keeps its velocity.
 
 A call of `run` adds a line to the file `calls` beside it. Its digest, where it has one, is the text of the file `digest` there.
+Asked for a problem with levels=..., it states that a quantity of that name is 24.8.
 """
 
 from dataclasses import dataclass
@@ -13,7 +14,8 @@ SCENE = {"name": "tiny", "box": {"size": [1.0, 1.0]},
 TEXT = """
 import sys
 from pathlib import Path
-from verification.protocol.adapter import Adapter, Cannot, Left, main
+from verification.protocol.adapter import Adapter, Cannot, Failed, Left, main
+from verification.protocol.quantity import Level, Quantity
 
 HERE = Path(__file__).parent
 
@@ -35,7 +37,13 @@ class Tiny(Adapter):
         rows = [f"{{i}},{{i}},0,4,{{velocity}}" for i in range(3)]
         header = "time,step,momentum_defect_x,fluid_particles,fluid_velocity_x"
         (task.out / "series.csv").write_text("\\n".join([header, *rows]) + "\\n")
-        return Left(digest=(HERE / "digest").read_text())
+        drag = {{}}
+        if "problem" in task.options:
+            if not task.option("levels"):
+                raise Failed("no levels are given")
+            levels = tuple(Level("N " + word, 1 / int(word), 24.8, 1.5) for word in task.option("levels").split(","))
+            drag = {{task.option("problem"): Quantity(24.8, 0.1, levels, 2.0, "Richardson", "N/m")}}
+        return Left(drag, digest=(HERE / "digest").read_text(), more={{"inputs": "12ab"}})
 
 if __name__ == "__main__":
     sys.exit(main(Tiny()))

@@ -380,7 +380,8 @@ def test_mappm_speaks_the_protocol(name: str, tmp_path: Path) -> None:
     assert run.record["steps"] == 20
     assert run.record["digest"] == run.series["digest"][-1]
     assert run.record["scene"]["text"] == WAVE.read_text()
-    assert run.record["cost"]["core_seconds"] >= run.record["wall_seconds"]["steps"] * 0.999
+    cost = run.record["cost"]  # in which the wall clock is no less than the processor's, on one core, but for the grain of that
+    assert 0 < cost["core_seconds"] <= cost["wall_seconds"] + 0.02
     assert velocity_error(run) < 0.01
 
 
