@@ -2,9 +2,10 @@
 
 What differs from the solver: the density is summed at every step with the kernel (1 - q^2)^4, forces have Lucy's kernel, both of
 the range `fluid.rcut`; pressure by Tait's law with exponent 7, about a density just below that of the lattice: the fluid starts
-with a background pressure of twice rho U^2, U the fastest motion, or particles would clump where the pressure is negative; friction of Morris, Fox and Zhu (1997), with the scene's dynamic viscosity; no particle is
-shifted. Particles of walls have the velocity of their wall, not one extrapolated through it, and their density by the same sum.
-Time advances by velocity Verlet, with a step that is safe by sound, friction and force.
+with a background pressure of twice rho U^2, U the fastest motion, or particles would clump where the pressure is negative;
+friction of Morris, Fox and Zhu (1997), with the scene's dynamic viscosity; no particle is shifted. Particles of walls have the
+velocity of their wall, not one extrapolated through it, and their density by the same sum. Time advances by velocity Verlet,
+with a step that is safe by sound, friction and force.
 
     python3 -m verification.codes.lammps run --scene FILE --out DIR [--cores N] [--steps N] [--option background=B]
 
@@ -23,7 +24,6 @@ from reference.scripted import frames_of
 from verification.protocol.adapter import Adapter, BadInput, Failed, Left, Task, main
 from verification.protocol.capability import FLUID, SPACE, WALLS
 from verification.protocol.quantity import checksum_of
-
 
 BACKGROUND = 2.0
 
