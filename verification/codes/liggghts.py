@@ -16,6 +16,7 @@ background of twice rho U^2. One core always: on two these styles give other fig
 import shlex
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 from reference.liggghts import __main__ as program
@@ -62,6 +63,7 @@ def solids(task: Task) -> Left:
 
 def fluid(task: Task) -> Left:
     """Throws BadInput, Cannot or FailedScript."""
+    began = time.process_time()
     scene = read_particle_scene(task.scene)
     if scene.walls or scene.gravity.any():
         raise Cannot("the SPH styles of liggghts are run on periodic flows that nothing drives; leave out walls and force.fluid")
@@ -74,7 +76,7 @@ def fluid(task: Task) -> Left:
         frames = frames_of(folder / flows.DUMP, len(particles.points), scene.dimension, plan.step)
         leave_frames(task.out, scene, particles, frames)
         checksum = checksum_of([folder / SCRIPT, folder / flows.START], folder)
-    return Left(more={"inputs": checksum, "step": plan.step, "steps": plan.steps})
+    return Left(setup_core_seconds=time.process_time() - began, more={"inputs": checksum, "step": plan.step, "steps": plan.steps})
 
 
 class Liggghts(Adapter):
