@@ -48,6 +48,14 @@ def _run_alone(laboratory, case, code, arguments: argparse.Namespace) -> None:
 
 
 def run_named(arguments: argparse.Namespace) -> int:
+    """In the laboratory named, or in one that starts empty and is removed."""
+    if not arguments.scratch:
+        return _run_in(arguments.out, arguments)
+    with tempfile.TemporaryDirectory() as folder:
+        return _run_in(Path(folder), arguments)
+
+
+def _run_in(folder: Path, arguments: argparse.Namespace) -> int:
     """The case, or all its points of the tier. Returns 0, 1 where something does not hold, else 77 where something was skipped."""
     from verification.codes.code import find_code
     from verification.store.laboratory import Laboratory
@@ -62,7 +70,7 @@ def run_named(arguments: argparse.Namespace) -> int:
     for name in arguments.case:
         points = find_cases(name)
         found += [case for case in points if len(points) == 1 or arguments.tier == "full" or case.tier == "quick"]
-    code, laboratory = find_code(arguments.code), Laboratory(arguments.out)
+    code, laboratory = find_code(arguments.code), Laboratory(folder)
     if code.missing:
         print(f"SKIPPED: {code.missing}")
         return SKIPPED_CODE
@@ -155,6 +163,23 @@ def report(arguments: argparse.Namespace) -> int:
     return draw_report(laboratory, arguments.tier, arguments.page, arguments.publish)
 
 
+def study(arguments: argparse.Namespace) -> int:
+    """Lists the studies, or runs what is missing of one and prints its table."""
+    from verification.studies.study import all_studies, find_study, lines_of, read_study, results_of, run_study
+
+    if arguments.name is None:
+        for found in map(read_study, all_studies()):
+            print(f"{found.name:28} {len(found.settings) * len(found.codes):4} runs  {textwrap.shorten(found.purpose, 90, placeholder=' ...')}")
+        return 0
+    from verification.store.laboratory import Laboratory
+
+    found, laboratory = find_study(arguments.name), Laboratory(arguments.out)
+    if not arguments.only_show:
+        run_study(laboratory, found, arguments.jobs, _say)
+    print("\n".join(lines_of(found, results_of(laboratory, found))))
+    return 0
+
+
 def _ranks(text: str) -> list[int]:
     ranks = [int(word) for word in text.split(",")]
     if min(ranks) < 1 or len(set(ranks)) != len(ranks):
@@ -178,6 +203,7 @@ def _add_run(commands) -> None:
     one.add_argument("--ranks", type=int, default=1, help="cores of each run")
     one.add_argument("--jobs", type=int, default=cores(), metavar="K", help="runs of a case at a time (default: a core each)")
     one.add_argument("--anew", action="store_true", help="run also what the store has; its digest must come out again")
+    one.add_argument("--scratch", action="store_true", help="in a store of its own, which starts empty and is removed")
     _add_out(one)
 
 
@@ -214,6 +240,12 @@ def _parser() -> argparse.ArgumentParser:
     report.add_argument("--only-draw", action="store_true", help="run nothing")
     _add_out(report)
 
+    many = commands.add_parser("study", help="run what is missing of a study and print its table; without a name, list the studies")
+    many.add_argument("name", nargs="?", help="CASE.NAME")
+    many.add_argument("--jobs", type=int, default=cores(), metavar="K", help="runs at a time (default: a core each)")
+    many.add_argument("--only-show", action="store_true", help="run nothing")
+    _add_out(many)
+
     bits = commands.add_parser("compare-bits", help="compare digests of the serial reference and the parallel solver")
     bits.add_argument("scene", type=Path)
     bits.add_argument("--ranks", type=_ranks, default=[1, 2], metavar="1,2,4", help="default 1,2")
@@ -247,6 +279,8 @@ def _called(arguments: argparse.Namespace) -> int:
             return use_store(arguments)
         case "report":
             return report(arguments)
+        case "study":
+            return study(arguments)
 
 
 def main() -> int:

@@ -157,7 +157,7 @@ def test_runs_and_references_get_the_derived_scene(tmp_path: Path, monkeypatch: 
         ("phi = 0.25", "phi = true", "parameters.phi = True: wrong type"),
         ("R_over_dx=3", "r_over_dx=3", "level[0]: r_over_dx=3: no such parameter; known are phi, R_over_dx"),
         ("R_over_dx=3", "R_over_dx=three", "level[0]: R_over_dx=three: wrong type; write a number, as 4 is"),
-        ("phi=1", "psi=1", "psi=1: no such parameter"),
+        ("phi=1", "psi=1", "case: psi=1: no such parameter; known are"),
         ("[case.parameters]", "[case.parameter]", "case.parameter: unknown; known are"),
     ],
 )
@@ -165,7 +165,8 @@ def test_what_is_wrong_is_named_with_its_fix(tmp_path: Path, old: str, new: str,
     file = written(tmp_path, old, new)
     with pytest.raises(CaseError) as caught:
         read_cases(file)
-    assert str(file) in str(caught.value) and message in str(caught.value)
+    assert str(caught.value).startswith(f"{file}: case") and str(caught.value).count(str(file)) == 1
+    assert message in str(caught.value)
 
 
 def test_a_key_without_a_place_is_refused(tmp_path: Path) -> None:
@@ -179,7 +180,8 @@ CASES = all_cases()
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_a_plain_scene_is_the_one_derived_at_the_defaults(case: Case) -> None:
-    assert plain(derived(case.plain, case.parameters, case.formulas, ())) == plain(case.plain)
+    assert plain(derived(case.plain, case.parameters, case.formulas, ())) == plain(case.plain), (
+        f"{case.file}: write {' '.join(overrides_of(case, ()))}")
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)

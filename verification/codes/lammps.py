@@ -24,7 +24,6 @@ from verification.protocol.adapter import Adapter, BadInput, Failed, Left, Task,
 from verification.protocol.capability import FLUID, SPACE, WALLS
 from verification.protocol.quantity import checksum_of
 
-
 BACKGROUND = 2.0
 
 

@@ -17,6 +17,7 @@ from verification.suite.result import CaseResult
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of a backend without a display)
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator  # noqa: E402
 
 STYLE = {"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.3,
          "svg.fonttype": "none", "svg.hashsalt": "mappm"}
@@ -105,7 +106,10 @@ def convergence(outcome: Outcome, refined: str, file: Path) -> None:
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_xticks(spacings, [f"{value:.3g}" for value in spacings], fontsize=8)
-        axes.minorticks_off()
+        axes.xaxis.set_minor_locator(NullLocator())
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=8))
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.yaxis.set_minor_locator(NullLocator())
         axes.set_xlabel(refined)
         axes.set_ylabel("|error|" if outcome.observable.reference == 0 else "|relative error|")
         axes.set_title(outcome.observable.symbol, fontsize=10)
@@ -165,6 +169,7 @@ def trend(history: list[dict], keys: list[str], file: Path) -> None:
                 axes.plot(*zip(*points, strict=True), "o-", markersize=3, linewidth=1, **style)
         axes.axhline(1.0, color=GREEN, linewidth=1)
         axes.set_yscale("log")
-        axes.set_xticks(range(len(history)), [f"{entry['date'][:10]}\n{entry['commit'][:8]}" for entry in history], fontsize=8)
+        shown = range(0, len(history), 1 + len(history) // 8)
+        axes.set_xticks(list(shown), [f"{history[k]['date'][:10]}\n{history[k]['commit'][:8]}" for k in shown], fontsize=8)
         axes.set_ylabel("|error| / goal")
         axes.figure.legend(frameon=False, fontsize=6, ncols=2, loc="outside lower center")

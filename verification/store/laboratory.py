@@ -8,7 +8,6 @@ import fcntl
 import json
 import os
 import shutil
-import threading
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -114,8 +113,8 @@ class Laboratory:
             return self._make(request, known)
 
     def _make(self, request: Request, known: StoredRun | None) -> StoredRun:
-        folder, part = self.run_folder(request.key), self.run_folder(request.key + f".{os.getpid()}.{threading.get_ident()}.part")
-        shutil.rmtree(part, ignore_errors=True)
+        folder, part = self.run_folder(request.key), self.run_folder(request.key + ".part")
+        shutil.rmtree(part, ignore_errors=True)  # of one that was killed: whoever is here is alone
         part.mkdir(parents=True)
         try:
             scene_file = part / "scene.toml"

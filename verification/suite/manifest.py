@@ -8,9 +8,18 @@
     refined = "spacing"             # or "step": what gets finer from level to level
     stalls = "why the error stops falling"  # only where an observable has no band for its order; may be left out
 
+    [case.parameters]               # what a point, a level or --set may choose: a number, a text or a list each. May be left out
+    phi = 0.2                       # with the value that the scene as it stands has
+    R_over_dx = 8
+
+    [case.formulas]                 # what follows from parameters, in this order; see verification/suite/formulas.py
+    side = "sqrt(pi / phi)"         # a name without a dot: a helper of those that follow
+    "box.size" = "[side, side]"     # a key of the scene, which holds the value at the defaults
+    "fluid.spacing" = "1 / R_over_dx"
+
     [[case.point]]                  # one member of a family that shares all else; the case NAME.POINT. May be left out
     name = "phi_0.1"
-    set = ["box.size=[5.6, 5.6]"]   # overrides, which come before those of the level
+    set = ["phi=0.1", "run.duration=4"]  # KEY=VALUE, before those of the level: a parameter, or a key of the scene, which wins
     tier = "full"                   # that of the case if left out
     cost = 20                       # likewise
     stalls = "why the error stops falling"  # of this point, whose observables then have no band for their order
@@ -37,7 +46,7 @@
     extrapolated = 0.01             # goal of the value extrapolated over three levels or more, judged as well; may be left out
 
     [[case.level]]                  # from coarse to fine; `set = []` is the scene as it stands
-    set = ["fluid.spacing=0.125", "fluid.rcut=0.375"]
+    set = ["R_over_dx=12"]
     tier = "full"                   # only in that tier; may be left out
 
     [[case.vary]]                   # one source of numerical error, changed alone on the finest quick level
@@ -195,6 +204,8 @@ def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
         stalls = " ".join(_entry(table, "stalls", str, at, "").split())
         try:
             scene = derived(case.plain, case.parameters, case.formulas, base, f"{case.file}: case")
+        except CaseError:
+            raise
         except (KeyError, IndexError, ValueError) as error:
             raise CaseError(f"{at}.set = {list(base)}: no such key: {error}") from None
         found.append(replace(

@@ -122,6 +122,8 @@ def scene_of(case: Case, sets: Sets) -> dict:
     """The whole scene of a case under `sets`, which for a point begin with its own. Throws CaseError."""
     try:
         return derived(case.plain, case.parameters, case.formulas, sets, f"{case.file}: case")
+    except CaseError:
+        raise
     except (KeyError, IndexError, ValueError, TypeError) as error:
         raise CaseError(f"{case.file}: {' '.join(sets)}: no such key: {error}; see solver/scene/README.md") from None
 

@@ -155,8 +155,9 @@ def obtain(laboratory: Laboratory, job: Job, anew: bool = False) -> Entry:
 Told = Callable[[Job, float], None]
 
 
-def perform(laboratory: Laboratory, jobs: list[Job], workers: int, told: Told = lambda job, share: None, anew: bool = False) -> None:
-    """Makes all that is missing, the longest first, `workers` at a time.
+def perform(laboratory: Laboratory, jobs: list[Job], workers: int, told: Told = lambda job, share: None, anew: bool = False,
+            cheapest_first: bool = False) -> None:
+    """Makes all that is missing, the longest first, or the cheapest, `workers` at a time.
 
     `told` is called after each with the share of the expected work that is behind. The first error ends it.
     """
@@ -172,8 +173,9 @@ def perform(laboratory: Laboratory, jobs: list[Job], workers: int, told: Told = 
             behind += weights[id(job)]
             told(job, behind / total)
 
+    ordered = sorted(waiting, key=lambda job: weights[id(job)], reverse=not cheapest_first)
     with ThreadPoolExecutor(max(1, min(workers, os.cpu_count() or 1))) as pool:
-        futures = [pool.submit(one, job) for job in sorted(waiting, key=lambda job: -weights[id(job)])]
+        futures = [pool.submit(one, job) for job in ordered]
         try:
             for future in futures:
                 future.result()
