@@ -15,8 +15,8 @@ class NoFigure(StoreError, LookupError):
 
 
 def words_of(settings: dict[str, Setting]) -> str:
-    """For people: fluid=2d_39 ranks=1."""
-    return " ".join(f"{key}={value}" for key, value in settings.items())
+    """For people, by key: fluid=2d_39 ranks=1."""
+    return " ".join(f"{key}={settings[key]}" for key in sorted(settings))
 
 
 def _place(value: Setting) -> tuple[bool, float, str]:
