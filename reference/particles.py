@@ -113,7 +113,8 @@ def _wall(body: dict, dimension: int, number: int) -> Wall:
     if "extent" in body:
         limits = body["extent"]
         extent = ("xyz".index(limits["axis"]), _number(limits, "from", f"{at}.extent"), _number(limits, "to", f"{at}.extent"))
-    return Wall(axis, _number(body, "position", at), _number(body, "thickness", at), _vector(body.get("velocity", []), dimension), extent)
+    velocity = _vector(body.get("velocity", []), dimension)
+    return Wall(axis, _number(body, "position", at), _number(body, "thickness", at), velocity, extent)
 
 
 def read_particle_scene(scene: dict) -> ParticleScene:
@@ -226,8 +227,11 @@ def plan_of(scene: ParticleScene, limit: float, steps: int | None) -> Plan:
     return Plan(step, steps, min(every, steps))
 
 
-def leave_frames(out: Path, scene: ParticleScene, particles: Particles, frames: Iterable[tuple[float, np.ndarray, np.ndarray]]) -> None:
-    """Writes the snapshots and series.csv of frames (time, points (n, D), velocity (n, D)), in the order of `particles`."""
+Frame = tuple[float, np.ndarray, np.ndarray]  # time, points (n, D), velocity (n, D)
+
+
+def leave_frames(out: Path, scene: ParticleScene, particles: Particles, frames: Iterable[Frame]) -> None:
+    """Writes the snapshots and series.csv of frames that are in the order of `particles`."""
     fluid, axes = particles.fluid, "xyz"[: scene.dimension]
     lines = ["time," + ",".join(f"fluid_velocity_{axis}" for axis in axes) + ",fluid_energy"]
     for number, (time, points, velocity) in enumerate(frames):

@@ -66,7 +66,7 @@ class Laboratory:
         try:
             (folder / "runs").mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise StoreError(f"{folder}: {error.strerror}; name another folder with --out") from None
+            raise StoreError(f"{folder}: {error.strerror}; name another folder with --lab") from None
         self.store = Store(folder / STORE)
 
     def run_folder(self, key: str) -> Path:
@@ -119,19 +119,24 @@ class Laboratory:
         try:
             scene_file = part / "scene.toml"
             scene_file.write_text(scene_text(request.scene))
-            run_code(request.code, scene_file, part / "out", request.cores, request.steps, dict(request.options))
+            run = run_code(request.code, scene_file, part / "out", request.cores, request.steps, dict(request.options))
+            stored = self._stored(request, run)
+            self._compare(request, stored, known)
             shutil.rmtree(folder, ignore_errors=True)
-            (part / "out").replace(folder)
+            run.folder.replace(folder)
         finally:
             shutil.rmtree(part, ignore_errors=True)
-        stored, run = self._stored(request, Run(folder)), Run(folder)
+        self.store.enter(stored, kept_of(Run(folder), request.field))
+        return stored
+
+    @staticmethod
+    def _compare(request: Request, stored: StoredRun, known: StoredRun | None) -> None:
+        """Throws StoreError where the same run gave another digest before."""
         if known is not None and known.record.get("digest") != stored.record.get("digest"):
             raise StoreError(
                 f"{request.label}: the digest is {stored.record.get('digest')}, and was {known.record.get('digest')} at "
                 f"{known.made.source}: results changed without a new numerics version of {request.code.name}; raise that version, "
                 f"or remove what is stale with `store prune`")
-        self.store.enter(stored, kept_of(run, request.field))
-        return stored
 
     @staticmethod
     def _stored(request: Request, run: Run) -> StoredRun:

@@ -236,6 +236,10 @@ class Store:
     def files(self, key: str) -> dict[str, bytes]:
         return {name: zlib.decompress(data) for name, data in self._rows("SELECT name, data FROM files WHERE key = ?", key)}
 
+    def has_files(self, key: str) -> bool:
+        """Not of a run that was imported."""
+        return bool(self._rows("SELECT 1 FROM files WHERE key = ? LIMIT 1", key))
+
     # What was measured.
 
     def enter_found(self, key: str, measure: str, found: Found) -> None:

@@ -131,15 +131,15 @@ def measured(case: Case, run: Run, code: Code, with_charts: bool) -> Found:
 
 
 def look_up(laboratory: Shelf, job: Job) -> Entry | None:
-    """What the store has of a job; None where the run or something measured of it is missing."""
+    """What the store has of a job; None where the run or something measured of it is missing. What was imported has no charts."""
     stored = laboratory.store.run(job.request.key)
     if stored is None:
         return None
     measures = measures_in(job.case.file.parent)
     found = laboratory.store.found(stored.key, measure_id(job.case.file.parent))
     whole = all(name in found.values for name in _names(job.case, measures))
-    whole = whole and not (job.finest and measures.charts is not None and OWN not in found.charts)
-    return Entry(stored, found) if whole else None
+    undrawn = job.finest and measures.charts is not None and OWN not in found.charts
+    return None if not whole or (undrawn and laboratory.store.has_files(stored.key)) else Entry(stored, found)
 
 
 def obtain(laboratory: Laboratory, job: Job, anew: bool = False) -> Entry:
