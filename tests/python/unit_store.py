@@ -413,7 +413,7 @@ def velocity(run):
 def charts(run):
     return [Chart("u", "t", "u", (Curve("u", run.series["time"], run.series["fluid_velocity_x"]),))]
 
-MEASURES = Measures(observables=by_name(velocity), charts=charts)
+MEASURES = Measures(observables=by_name(velocity), figures={"runs": lambda run: 1.0}, charts=charts)
 """
 
 
@@ -441,6 +441,15 @@ def test_an_edited_measure_runs_again_what_is_no_more_there(bits: Tiny, laborato
         perform(laboratory, [job], 1)
         laboratory.drop_folders()
         assert bits.calls == calls
+
+
+def test_a_run_of_which_a_value_is_missing_is_measured_anew(bits: Tiny, laboratory: Laboratory, tmp_path: Path) -> None:
+    (job,) = jobs_of(case_in(tmp_path / "one"), "quick", bits.code)
+    for name in ("velocity", "figure runs"):
+        assert obtain(laboratory, job).figures == {"velocity": 3.0, "runs": 1.0}
+        laboratory.store._connection.execute("DELETE FROM measured WHERE name = ?", (name,))
+        assert look_up(laboratory, job) is None
+    assert bits.calls == 1
 
 
 def test_charts_are_kept_of_the_finest_run_and_asked_for(bits: Tiny, laboratory: Laboratory, tmp_path: Path) -> None:
