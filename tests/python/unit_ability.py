@@ -162,7 +162,7 @@ def verification(folder: Path, *words: str) -> subprocess.CompletedProcess:
     ((('gradient = "x"', 'gradient = "y"'),), 77, "SKIPPED: exact: ")])
 def test_the_command_line_tells_a_skip_from_a_pass(tmp_path: Path, changes: tuple, status: int, line: str) -> None:
     case_in(tmp_path, *changes)
-    done = verification(tmp_path, "run", "decay", "--code", "exact", "--out", str(tmp_path / "runs"))
+    done = verification(tmp_path, "run", "decay", "--code", "exact", "--lab", str(tmp_path / "runs"))
     assert (done.returncode, line in done.stdout) == (status, True), done.stdout + done.stderr
 
 
@@ -170,7 +170,7 @@ def test_a_code_that_is_not_installed_is_skipped(tmp_path: Path) -> None:
     case_in(tmp_path)
     absent = tmp_path / "absent.py"
     absent.write_text("""print('{"name": "absent", "version": "", "capabilities": ["fluid"], "missing": "install it"}')""")
-    done = verification(tmp_path, "run", "decay", "--code", str(absent), "--out", str(tmp_path / "runs"))
+    done = verification(tmp_path, "run", "decay", "--code", str(absent), "--lab", str(tmp_path / "runs"))
     assert (done.returncode, done.stdout) == (77, "SKIPPED: install it\n")
 
 # --- the table of codes

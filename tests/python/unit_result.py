@@ -56,7 +56,7 @@ def test_a_scene_run_alone_is_asked_for_no_order(tmp_path: Path) -> None:
 def test_the_judge_ends_with_its_verdict(tmp_path: Path) -> None:
     # A fluid at rest is at rest; one in uniform motion is not, and the case says so, also when asked again.
     for velocity, code, verdict in (("[0,0]", 0, ", CORRECT"), ("[0.01,0]", 1, ", WRONG"), ("[0.01,0]", 1, ", WRONG")):
-        line = [sys.executable, "-m", "verification", "run", "rest", "--out", str(tmp_path), "--set", "run.steps=10",
+        line = [sys.executable, "-m", "verification", "run", "rest", "--lab", str(tmp_path), "--set", "run.steps=10",
                 "--set", f"fluid.velocity={velocity}"]
         judged = subprocess.run(line, cwd=ROOT, capture_output=True, text=True)
         assert judged.returncode == code, judged.stderr

@@ -189,7 +189,7 @@ def test_a_file_that_is_no_database_is_named_and_left_alone(tmp_path: Path) -> N
 
 def test_the_command_line_tells_a_broken_store_in_a_line(tmp_path: Path) -> None:
     (tmp_path / "store.sqlite").write_text("no database at all, but long enough to be taken for something" * 100)
-    done = subprocess.run([sys.executable, "-m", "verification", "store", "list", "--out", str(tmp_path)], cwd=ROOT,
+    done = subprocess.run([sys.executable, "-m", "verification", "store", "list", "--lab", str(tmp_path)], cwd=ROOT,
                           capture_output=True, text=True)
     assert (done.returncode, done.stderr.count("\n")) == (1, 1) and "file is not a database; move it aside" in done.stderr
 
@@ -519,7 +519,7 @@ def test_the_commands_of_the_store(bits: Tiny, laboratory: Laboratory, tmp_path:
     key = laboratory.obtain(Request(bits.code, SCENE, "a label")).key
 
     def said(*words: str) -> str:
-        done = subprocess.run([sys.executable, "-m", "verification", "store", *words, "--out", str(laboratory.folder)], cwd=ROOT,
+        done = subprocess.run([sys.executable, "-m", "verification", "store", *words, "--lab", str(laboratory.folder)], cwd=ROOT,
                               capture_output=True, text=True)
         return done.stdout if done.returncode == 0 else textwrap.shorten(done.stderr, 200)
 

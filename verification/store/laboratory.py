@@ -66,7 +66,7 @@ class Laboratory:
         try:
             (folder / "runs").mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise StoreError(f"{folder}: {error.strerror}; name another folder with --out") from None
+            raise StoreError(f"{folder}: {error.strerror}; name another folder with --lab") from None
         self.store = Store(folder / STORE)
 
     def run_folder(self, key: str) -> Path:

@@ -311,12 +311,18 @@ class Store:
                 yield table, dict(zip(names, row, strict=True))
 
     def enter_rows(self, rows: Iterable[tuple[str, dict]]) -> int:
-        """Of an export; rows that are here already stay as they are. Returns how many were new. All or nothing."""
+        """Of an export; rows that are here already stay as they are, and of a benchmark those that were made later, all of
+        them. Returns how many were new. All or nothing."""
         entered = 0
         with self._change() as change:
+            made = dict(change.execute("SELECT bench, max(made) FROM figures GROUP BY bench").fetchall())
             for table, row in rows:
                 if table not in EXPORTED:
                     raise StoreError(f"{table}: is no table of a store; known are {', '.join(EXPORTED)}")
+                if table == "figures" and row["bench"] in made:
+                    if row["made"] <= made[row["bench"]]:
+                        continue
+                    change.execute("DELETE FROM figures WHERE bench = ? AND made < ?", (row["bench"], row["made"]))
                 names = ", ".join(row)
                 cursor = change.execute(f"INSERT OR IGNORE INTO {table} ({names}) VALUES ({','.join('?' * len(row))})",
                                         tuple(row.values()))
