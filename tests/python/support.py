@@ -1,16 +1,12 @@
 """What several tests share."""
 
 import importlib.util
-from collections.abc import Mapping
 from pathlib import Path
 from types import ModuleType
 
 from verification.codes.code import Code, find_code
-from verification.measures.measures import Measure, measures_in
-from verification.measures.observables import OBSERVABLES
 from verification.protocol.run import Run
 from verification.store.laboratory import Laboratory
-from verification.suite.case import Case
 from verification.suite.judge import CORRECT, Outcome
 from verification.suite.manifest import find_case
 from verification.suite.result import Way, run_with
@@ -30,11 +26,6 @@ def assert_correct(outcome: Outcome, goal: float) -> None:
     """The verdict of the manifest, whose goal may be no looser than the one the test states."""
     assert outcome.observable.goal <= goal
     assert outcome.verdict == CORRECT, outcome.line
-
-
-def measures_of(case: Case) -> Mapping[str, Measure]:
-    """All that can be measured of a case, by name."""
-    return OBSERVABLES | dict(measures_in(case.file.parent).observables)
 
 
 def measure_module(name: str) -> ModuleType:

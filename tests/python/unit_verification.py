@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support import measures_of
 
 from verification.bits.compare import PairDifference, trace_differences
 from verification.bits.equivalence import Row, read_equivalence
@@ -16,6 +15,7 @@ from verification.protocol.series import first_difference, read_table
 from verification.suite.case import Observable
 from verification.suite.judge import CORRECT, OPEN, WRONG, Outcome
 from verification.suite.manifest import all_cases, read_cases
+from verification.suite.runner import measures_of
 
 TIME = np.linspace(0.0, 10.0, 501)
 
@@ -95,7 +95,7 @@ def test_every_case_has_a_sound_manifest() -> None:
     cases = all_cases()
     assert len(cases) >= 9
     for case in cases:
-        assert all(observable.name in measures_of(case) for observable in case.observables)
+        assert all(observable.name in measures_of(case.file.parent) for observable in case.observables)
         assert all(observable.goal >= 0.0 for observable in case.observables)
 
 
