@@ -150,6 +150,7 @@ size = [1.0, 1.0]
 [fluid]
 density = 1.0
 viscosity = 1.0
+spacing = 0.1
 reference_velocity = 0.01
 [[body]]
 shape = "disc"

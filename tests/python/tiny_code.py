@@ -14,7 +14,9 @@ SCENE = {"name": "tiny", "box": {"size": [1.0, 1.0]},
 TEXT = """
 import sys
 from pathlib import Path
+import numpy as np
 from verification.protocol.adapter import Adapter, Cannot, Failed, Left, main
+from verification.protocol.points import write_points
 from verification.protocol.quantity import Level, Quantity
 
 HERE = Path(__file__).parent
@@ -37,6 +39,7 @@ class Tiny(Adapter):
         rows = [f"{{i}},{{i}},0,4,{{velocity}}" for i in range(3)]
         header = "time,step,momentum_defect_x,fluid_particles,fluid_velocity_x"
         (task.out / "series.csv").write_text("\\n".join([header, *rows]) + "\\n")
+        write_points(task.out, 0, 0.0, np.zeros((1, 2)), np.ones((1, 2)))
         drag = {{}}
         if "problem" in task.options:
             if not task.option("levels"):

@@ -15,6 +15,7 @@ from verification.codes.liggghts import Liggghts
 from verification.codes.openfoam import OpenFoam
 from verification.codes.pysph import PySph
 from verification.protocol.adapter import BAD_INPUT, CANNOT, Adapter, BadInput, Cannot, main
+from verification.protocol.toml_text import scene_text
 
 LINES = {"lammps": "./setup --peers", "pysph": "./setup --peers", "liggghts": "apt-get install liggghts",
          "openfoam": "apt-get install openfoam"}
@@ -38,7 +39,7 @@ def test_a_code_that_is_not_installed_names_the_line_that_installs_it(
     assert main(adapter, ["describe"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["missing"].endswith(LINES[adapter.name]) and found["version"] == ""
-    (tmp_path / "scene.toml").write_text("[box]\nsize = [1.0, 1.0]\n")
+    (tmp_path / "scene.toml").write_text(scene_text(CHANNEL))
     assert main(adapter, ["run", "--scene", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out")]) == CANNOT
     assert capsys.readouterr().err.strip().endswith(LINES[adapter.name])
 
@@ -86,7 +87,7 @@ def test_the_sum_over_a_lattice_by_hand() -> None:
 def test_options_of_a_reference_are_checked_by_its_program(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     if lacking := Liggghts().missing():
         pytest.skip(lacking)
-    (tmp_path / "scene.toml").write_text("[box]\nsize = [1.0, 1.0]\n")
+    (tmp_path / "scene.toml").write_text(scene_text(CHANNEL))
     given = ["run", "--scene", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out")]
     assert main(Liggghts(), [*given, "--option", "problem=fall", "--option", "gamma=much"]) == BAD_INPUT
     assert "argument --gamma: invalid float value" in capsys.readouterr().err

@@ -334,6 +334,17 @@ def test_a_run_is_made_once(bits: Tiny, laboratory: Laboratory) -> None:
     assert bits.calls == 2 and laboratory.run(first.key) is not None
 
 
+def test_a_field_that_is_wanted_later_is_kept_then(bits: Tiny, laboratory: Laboratory) -> None:
+    request = Request(bits.code, SCENE, "tiny")
+    key = laboratory.obtain(request).key
+    assert list(laboratory.store.files(key)) == ["series.csv"]
+    for _ in range(2):
+        laboratory.obtain(replace(request, field=True))
+        assert sorted(laboratory.store.files(key)) == ["series.csv", "snapshots/fluid_000000000.vtkhdf"]
+    with laboratory.kept(key) as run:
+        assert run.fluid()["velocity"].tolist() == [[1.0, 1.0, 0.0]] and bits.calls == 1
+
+
 def test_threads_that_want_one_run_make_it_once(bits: Tiny, laboratory: Laboratory) -> None:
     with ThreadPoolExecutor(4) as pool:
         keys = set(pool.map(lambda _: laboratory.obtain(Request(bits.code, SCENE, "tiny")).key, range(4)))

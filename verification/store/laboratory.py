@@ -109,8 +109,15 @@ class Laboratory:
         with self._alone_at(key):
             known = self.store.run(key)
             if known is not None and not anew and not (folder_too and self.run(key) is None):
+                self._keep_field(request)
                 return known
             return self._make(request, known)
+
+    def _keep_field(self, request: Request) -> None:
+        """Of a run that was first made without, while its folder is there."""
+        run = self.run(request.key) if request.field else None
+        if run is not None and not any(name.startswith("snapshots/") for name in self.store.files(request.key)):
+            self.store.enter_files(request.key, kept_of(run, True))
 
     def _make(self, request: Request, known: StoredRun | None) -> StoredRun:
         folder, part = self.run_folder(request.key), self.run_folder(request.key + ".part")

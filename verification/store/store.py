@@ -191,11 +191,19 @@ class Store:
                 for table in ("measured", "charts"):
                     change.execute(f"DELETE FROM {table} WHERE key = ?", (run.key,))
             change.execute(f"INSERT OR REPLACE INTO runs VALUES ({','.join('?' * len(row))})", row)
-            change.execute("DELETE FROM files WHERE key = ?", (run.key,))
-            change.executemany("INSERT INTO files VALUES (?, ?, ?)",
-                               [(run.key, name, zlib.compress(data, 6)) for name, data in files.items()])
+            self._enter_files(change, run.key, files)
             if run.cost is not None:
                 self._enter_cost(change, run.key, run.cost, made)
+
+    @staticmethod
+    def _enter_files(change: sqlite3.Connection, key: str, files: Mapping[str, bytes]) -> None:
+        change.execute("DELETE FROM files WHERE key = ?", (key,))
+        change.executemany("INSERT INTO files VALUES (?, ?, ?)", [(key, name, zlib.compress(data, 6)) for name, data in files.items()])
+
+    def enter_files(self, key: str, files: Mapping[str, bytes]) -> None:
+        """In place of those that are kept of a run."""
+        with self._change() as change:
+            self._enter_files(change, key, files)
 
     @staticmethod
     def _enter_cost(change: sqlite3.Connection, key: str, cost: Cost, made: Made) -> None:
