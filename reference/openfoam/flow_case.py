@@ -11,6 +11,8 @@ from reference.openfoam.room import Room
 
 PROGRAM = "pimpleFoam"
 OUTER = 2  # times that momentum and pressure are solved in a step: with one, fluxes would lag and be of first order in time
+CORRECTORS = 2  # pressures each time: with one, the iteration diverges where friction is strong, nu dt / h^2 above about 0.5
+COUPLING = 1  # of the fluxes to the velocities of the steps before; by default it is limited, and of less than first order in time
 
 
 @dataclass(frozen=True)
@@ -34,19 +36,19 @@ writeControl timeStep; writeInterval {case.every}; purgeWrite 0; writeFormat asc
 writeCompression off; timeFormat general; timePrecision 12; runTimeModifiable no; adjustTimeStep no;"""
 
 
-SCHEMES = """ddtSchemes { default backward; }
-gradSchemes { default Gauss linear; }
-divSchemes { default none; div(phi,U) Gauss linear; div((nuEff*dev2(T(grad(U))))) Gauss linear; }
-laplacianSchemes { default Gauss linear orthogonal; }
-interpolationSchemes { default linear; }
-snGradSchemes { default orthogonal; }"""
+SCHEMES = f"""ddtSchemes {{ default backward {COUPLING}; }}
+gradSchemes {{ default Gauss linear; }}
+divSchemes {{ default none; div(phi,U) Gauss linear; div((nuEff*dev2(T(grad(U))))) Gauss linear; }}
+laplacianSchemes {{ default Gauss linear orthogonal; }}
+interpolationSchemes {{ default linear; }}
+snGradSchemes {{ default orthogonal; }}"""
 
 SOLUTION = f"""solvers {{
 p {{ solver GAMG; smoother GaussSeidel; tolerance 1e-6; relTol 0.01; }}
 pFinal {{ $p; relTol 0; }}
 U {{ solver smoothSolver; smoother symGaussSeidel; tolerance 1e-8; relTol 0.01; }}
 UFinal {{ $U; relTol 0; }} }}
-PIMPLE {{ nOuterCorrectors {OUTER}; nCorrectors 1; nNonOrthogonalCorrectors 0; pRefCell 0; pRefValue 0; }}"""
+PIMPLE {{ nOuterCorrectors {OUTER}; nCorrectors {CORRECTORS}; nNonOrthogonalCorrectors 0; pRefCell 0; pRefValue 0; }}"""
 
 
 def _list(values: np.ndarray) -> str:
