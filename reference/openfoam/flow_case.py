@@ -46,7 +46,7 @@ snGradSchemes {{ default orthogonal; }}"""
 SOLUTION = f"""solvers {{
 p {{ solver GAMG; smoother GaussSeidel; tolerance 1e-6; relTol 0.01; }}
 pFinal {{ $p; relTol 0; }}
-U {{ solver smoothSolver; smoother symGaussSeidel; tolerance 1e-8; relTol 0.01; }}
+U {{ solver smoothSolver; smoother symGaussSeidel; tolerance 1e-11; relTol 0.01; }}
 UFinal {{ $U; relTol 0; }} }}
 PIMPLE {{ nOuterCorrectors {OUTER}; nCorrectors {CORRECTORS}; nNonOrthogonalCorrectors 0; pRefCell 0; pRefValue 0; }}"""
 
