@@ -125,7 +125,11 @@ def relaxation_time(run: Run) -> Measured:
 
 
 def _times(run: Run) -> np.ndarray:
+    """Up to the end, of which two digits count: runs that end within a step of each other are compared at the same times, and
+    the theory is worked out once for all of them."""
     end = slip(run)[0][-1]
+    unit = 10.0 ** (np.floor(np.log10(end)) - 1)
+    end = np.floor(end / unit + 1e-9) * unit
     return np.geomspace(0.01 * end, end, TIMES)
 
 
