@@ -142,6 +142,21 @@ def _decaying(scene: dict) -> Decaying:
     return Decaying(kind, in_si(table["amplitude"]), k, rate, *axes, _vector(fluid.get("velocity")))
 
 
+def gap_between(layers: list[tuple[float, float]], side: float, least: float) -> tuple[float, float, int, int]:
+    """Start and width of the only gap wider than `least` that layers (lower face, thickness) leave in a periodic box, and
+    which of them are below and above it. Throws Cannot where there is not one.
+    """
+    order, gaps = sorted(range(len(layers)), key=lambda which: layers[which][0]), []
+    for below, above in zip(order, order[1:] + order[:1], strict=True):
+        start = sum(layers[below])
+        width = layers[above][0] - start + (side if above == order[0] else 0.0)
+        if width > least:
+            gaps.append((start, width, below, above))
+    if len(gaps) != 1:
+        raise Cannot(f"{len(gaps)} channels between the walls, one is needed")
+    return gaps[0]
+
+
 def _channel(scene: dict) -> Channel:
     fluid, walls, size = scene["fluid"], scene["body"], scene["box"]["size"]
     last = AXES[len(size) - 1]
@@ -154,15 +169,8 @@ def _channel(scene: dict) -> Channel:
     force = _vector(scene.get("force", {}).get("fluid"))
     if force[normal]:
         raise Cannot("a force across the walls has no exact solution here")
-    side, order = in_si(size[normal]), sorted(walls, key=lambda wall: in_si(wall["position"]))
-    gaps = []
-    for below, above in zip(order, order[1:] + order[:1], strict=True):
-        start = in_si(below["position"]) + in_si(below["thickness"])
-        width = in_si(above["position"]) - start + (side if above is order[0] else 0.0)
-        if width > 1e-3 * in_si(fluid["spacing"]):
-            gaps.append((start, width, below, above))
-    if len(gaps) != 1:
-        raise Cannot(f"{len(gaps)} channels between the walls, one is needed")
-    ((start, width, below, above),) = gaps
-    velocities = (_vector(wall.get("velocity")) for wall in (below, above))
+    side = in_si(size[normal])
+    layers = [(in_si(wall["position"]), in_si(wall["thickness"])) for wall in walls]
+    start, width, below, above = gap_between(layers, side, 1e-3 * in_si(fluid["spacing"]))
+    velocities = (_vector(walls[which].get("velocity")) for which in (below, above))
     return Channel(normal, start, width, side, _viscosity(fluid), *velocities, force)

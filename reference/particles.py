@@ -117,13 +117,13 @@ def _wall(body: dict, dimension: int, number: int) -> Wall:
     return Wall(axis, _number(body, "position", at), _number(body, "thickness", at), velocity, extent)
 
 
-def read_particle_scene(scene: dict) -> ParticleScene:
-    """Throws BadInput, and Cannot on what a fluid of particles between plane walls does not have."""
+def read_particle_scene(scene: dict, sound: bool = True) -> ParticleScene:
+    """Throws BadInput, and Cannot on what a fluid between plane walls does not have. Without `sound` its speed is infinite."""
     size, table, force = _vector(scene["box"]["size"], 0), scene["fluid"], scene.get("force", {})
     dimension = len(size)
     if not table.get("particles", True):
         raise Cannot("fluid.particles = false: there is no fluid in this scene")
-    if "duration" not in scene["run"]:
+    if "duration" not in scene.get("run", {}):
         raise Cannot("run.steps counts the steps of the solver; this code needs run.duration")
     if driven := [name for name in FIELDS if name in force]:
         raise Cannot(f"force.{driven[0]}: this code drives the fluid by a uniform acceleration alone")
@@ -136,7 +136,7 @@ def read_particle_scene(scene: dict) -> ParticleScene:
         density=_number(table, "density", "fluid"),
         viscosity=_number(table, "viscosity", "fluid"),
         reach=_number(table, "rcut", "fluid") if "rcut" in table else 3 * spacing,
-        sound_speed=_number(table, "sound_speed", "fluid"),
+        sound_speed=_number(table, "sound_speed", "fluid") if sound else math.inf,
         gravity=_vector(force.get("fluid", []), dimension),
         walls=tuple(_wall(body, dimension, number) for number, body in enumerate(scene.get("body", []))),
         duration=_number(scene["run"], "duration", "run"),
@@ -230,13 +230,15 @@ def plan_of(scene: ParticleScene, limit: float, steps: int | None) -> Plan:
 Frame = tuple[float, np.ndarray, np.ndarray]  # time, points (n, D), velocity (n, D)
 
 
-def leave_frames(out: Path, scene: ParticleScene, particles: Particles, frames: Iterable[Frame]) -> None:
-    """Writes the snapshots and series.csv of frames that are in the order of `particles`."""
+def leave_frames(out: Path, scene: ParticleScene, particles: Particles, frames: Iterable[Frame], mass: float | None = None) -> None:
+    """Writes the snapshots and series.csv of frames that are in the order of `particles`; mass, of one of them, by default
+    that of the lattice."""
+    mass = scene.mass if mass is None else mass
     fluid, axes = particles.fluid, "xyz"[: scene.dimension]
     lines = ["time," + ",".join(f"fluid_velocity_{axis}" for axis in axes) + ",fluid_energy"]
     for number, (time, points, velocity) in enumerate(frames):
         write_points(out, number, time, points % scene.size, velocity, ~fluid)
         moving = velocity[fluid]
-        row = [time, *moving.mean(axis=0), 0.5 * scene.mass * float(np.sum(moving**2))]
+        row = [time, *moving.mean(axis=0), 0.5 * mass * float(np.sum(moving**2))]
         lines.append(",".join(repr(float(value)) for value in row))
     (out / "series.csv").write_text("\n".join(lines) + "\n")

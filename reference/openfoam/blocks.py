@@ -7,6 +7,7 @@ those at the surface are as wide as high: the levels are similar, as an observed
 
 import itertools
 import math
+from collections.abc import Sequence, Set
 from dataclasses import dataclass
 
 import numpy as np
@@ -99,12 +100,28 @@ def sphere_mesh(radius: float, n: int) -> BlockMesh:
     return BlockMesh(vertices, blocks, (2 * n, 2 * n, 3 * n // 2), growth, arcs, patches, radius)
 
 
+def brick_mesh(size: Sequence[float], cells: Sequence[int], walls: Set[int] = frozenset()) -> BlockMesh:
+    """A block with a corner at the origin: size (D), cells (D) along each side; periodic along the axes that are not in
+    `walls`. In the plane it is one cell deep, of depth 1.
+    """
+    in_space = len(size) == 3
+    whole = np.array([*size, 1.0][:3])
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    patches = {}
+    for axis, low, high in ((0, (0, 4, 7, 3), (1, 2, 6, 5)), (1, (0, 1, 5, 4), (3, 7, 6, 2)), (2, (0, 3, 2, 1), (4, 5, 6, 7))):
+        if axis == 2 and not in_space:
+            patches["front_and_back"] = Patch("empty", (low, high))
+        elif axis in walls:
+            patches |= {f"{'xyz'[axis]}_low": Patch("wall", (low,)), f"{'xyz'[axis]}_high": Patch("wall", (high,))}
+        else:
+            patches |= _pair("xyz"[axis], low, high)
+    counts = (int(cells[0]), int(cells[1]), int(cells[2]) if in_space else 1)
+    return BlockMesh(np.array(corners, float) * whole, (tuple(range(8)),), counts, 1.0, (), patches)
+
+
 def box_mesh(n: int) -> BlockMesh:
     """A periodic cube of side 1 with a corner at the origin, n cells along each edge, and no body."""
-    vertices = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)], float)
-    patches = _pair("x", (0, 4, 7, 3), (1, 2, 6, 5)) | _pair("y", (0, 1, 5, 4), (3, 7, 6, 2))
-    patches |= _pair("z", (0, 3, 2, 1), (4, 5, 6, 7))
-    return BlockMesh(vertices, (tuple(range(8)),), (n, n, n), 1.0, (), patches)
+    return brick_mesh((1.0, 1.0, 1.0), (n, n, n))
 
 
 def mesh_of(dimension: int, radius: float, n: int) -> BlockMesh:

@@ -3,6 +3,7 @@
 Interpolation is corrected for skewness, without which these meshes are first order (0.4 % off at N 32, phi 0.1).
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -49,7 +50,16 @@ def foam_file(kind: str, name: str, body: str) -> str:
     return f"FoamFile {{ version 2.0; format ascii; class {kind}; object {name}; }}\n{body}\n"
 
 
-def _vector(values) -> str:
+def write_files(folder: Path, files: dict[str, tuple[str, str]]) -> list[Path]:
+    """Writes the files of a case: by path its class and body. Returns their paths."""
+    for name, (kind, body) in files.items():
+        file = folder / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(foam_file(kind, file.name, body))
+    return [folder / name for name in files]
+
+
+def vector_text(values: Iterable[float]) -> str:
     padded = (*values, 0.0, 0.0)[:3]
     return "(" + " ".join(f"{value:.15g}" for value in padded) + ")"
 
@@ -98,7 +108,7 @@ def _field(cell: Cell, solver: Solver, name: str, patches: dict[str, str]) -> st
     if isinstance(solver, Transient):
         start[0] -= solver.nudge * cell.direction[1]
         start[1] += solver.nudge * cell.direction[0]
-    value = _vector(start) if name == "U" else "0"
+    value = vector_text(start) if name == "U" else "0"
     wall = "noSlip" if name == "U" else "zeroGradient"
     lines = [
         f"{patch} {{ type {wall if kind == 'wall' else kind}; }}"  # cyclic and empty are named as their patches
@@ -111,7 +121,7 @@ def _field(cell: Cell, solver: Solver, name: str, patches: dict[str, str]) -> st
 def write_case(folder: Path, cell: Cell, solver: Solver, patches: dict[str, str], block_mesh: str = "") -> list[Path]:
     """Writes all files but the mesh into an empty folder; `patches` gives the kind of each. Returns what it wrote."""
     force = f"""meanVelocity {{ type meanVelocityForce; active yes; selectionMode all; fields (U);
-Ubar {_vector([component / (1 - cell.solid) for component in cell.direction])}; relaxation 1; }}"""
+Ubar {vector_text([component / (1 - cell.solid) for component in cell.direction])}; relaxation 1; }}"""
     viscosity = f"transportModel Newtonian; nu {cell.viscosity:.15g};"
     files = {
         "system/controlDict": ("dictionary", _control(solver)),
@@ -125,8 +135,4 @@ Ubar {_vector([component / (1 - cell.solid) for component in cell.direction])}; 
     }
     if block_mesh:
         files["system/blockMeshDict"] = ("dictionary", block_mesh)
-    for name, (kind, body) in files.items():
-        file = folder / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(foam_file(kind, file.name, body))
-    return [folder / name for name in files]
+    return write_files(folder, files)

@@ -7,6 +7,7 @@ import numpy as np
 
 GRADIENT = re.compile(r"Pressure gradient source: uncorrected Ubar = (\S+), pressure gradient = (\S+)")
 VOLUME = re.compile(r"Total volume = (\S+?)\.\s")
+UNIFORM = re.compile(r"^internalField\s+uniform\s+\(([^)]*)\)", re.MULTILINE)
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 
@@ -45,15 +46,21 @@ def forces(folder: Path) -> np.ndarray:
     return np.array(rows)
 
 
+def times(folder: Path) -> list[Path]:
+    """The folders of all times, in no order."""
+    return [path for path in folder.iterdir() if path.is_dir() and NUMBER.fullmatch(path.name)]
+
+
 def latest(folder: Path) -> Path:
     """The folder of the last time."""
-    times = [path for path in folder.iterdir() if path.is_dir() and NUMBER.fullmatch(path.name)]
-    return max(times, key=lambda path: float(path.name))
+    return max(times(folder), key=lambda path: float(path.name))
 
 
-def vectors(file: Path) -> np.ndarray:
-    """(cells, 3) the inner values of a vector field that is not uniform."""
+def vectors(file: Path, cells: int = 1) -> np.ndarray:
+    """(cells, 3) the inner values of a vector field; `cells` counts where they are all the same."""
     text = file.read_text()
+    if uniform := UNIFORM.search(text):
+        return np.tile(np.array(uniform[1].split(), float), (cells, 1))
     start = text.index("nonuniform List<vector>")
     begin = text.index("(", start)
     end = text.index("\n)", begin)

@@ -12,11 +12,12 @@ import sys
 
 from reference.openfoam import __main__ as program
 from reference.openfoam.errors import InputError
+from reference.openfoam.flows import subject
 from reference.openfoam.run import FailedRun, missing_of
 from reference.roles import PROBLEM, arguments_of, left_of, parsed
 from reference.scripted import package_version
-from verification.protocol.adapter import Adapter, BadInput, Cannot, Failed, Left, Task, main
-from verification.protocol.capability import FIXED_BODY, FLUID, FORCE_ON_BODY, MOVING_BODY, SPACE
+from verification.protocol.adapter import Adapter, BadInput, Failed, Left, Task, main
+from verification.protocol.capability import FIXED_BODY, FLUID, FORCE_ON_BODY, MOVING_BODY, SPACE, WALLS
 from verification.protocol.quantity import read_result
 
 RUN = {"drag": program.run_drag, "bodies": program.run_bodies}
@@ -38,14 +39,9 @@ def reference(task: Task) -> Left:
     return left_of(read_result(task.out), task.out)
 
 
-def subject(task: Task) -> Left:
-    """The scene itself. Throws Cannot."""
-    raise Cannot(f"openfoam runs no scene as it stands; name a reference: --option {PROBLEM}=drag --option levels=16,32")
-
-
 class OpenFoam(Adapter):
     name = "openfoam"
-    capabilities = frozenset({FLUID, SPACE, FIXED_BODY, MOVING_BODY, FORCE_ON_BODY})
+    capabilities = frozenset({FLUID, SPACE, WALLS, FIXED_BODY, MOVING_BODY, FORCE_ON_BODY})
 
     def version(self) -> str:
         return package_version("openfoam")

@@ -127,7 +127,7 @@ class Laboratory:
             scene_file = part / "scene.toml"
             scene_file.write_text(scene_text(request.scene))
             run = run_code(request.code, scene_file, part / "out", request.cores, request.steps, dict(request.options))
-            stored = self._stored(request, run)
+            stored = self._stored(request, run, part)
             self._compare(request, stored, known)
             shutil.rmtree(folder, ignore_errors=True)
             run.folder.replace(folder)
@@ -146,12 +146,14 @@ class Laboratory:
                 f"or remove what is stale with `store prune`")
 
     @staticmethod
-    def _stored(request: Request, run: Run) -> StoredRun:
+    def _stored(request: Request, run: Run, part: Path) -> StoredRun:
+        """Its command names the scene and the folder relative to where it ran."""
         record = {name: value for name, value in run.record.items() if name != "scene"}
+        record["command"] = record["command"].replace(f"{part}/", "")
         ledger = None
         if EXACT_LEDGER in request.code.capabilities:
             ledger = Ledger(*defects_of(run))
-        made = made_now(record.get("command", ""), record.get("commit"))
+        made = made_now(record["command"], record.get("commit"))
         return StoredRun(request.key, request.label, request.code.name, request.code.version, request.code.numerics_version,
                          plain(request.scene), request.steps, dict(request.options), record, made, ledger, cost_of(record))
 
