@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.bits.compare import compare_runs
-from verification.codes.mappm import Options, run
+from verification.bits.compare import VariantRun, compare_runs, run_variant
+from verification.codes.mappm import Options
 from verification.protocol.machine import ROOT
 from verification.protocol.run import Run
 from verification.protocol.series import Table, read_table
@@ -31,7 +31,7 @@ def travelled(solids: Table, axis: str, side: float) -> np.ndarray:
     return np.array([path[-1] - path[0] for path in paths])
 
 
-def assert_all_equal(runs: list[Run], samples: int) -> None:
+def assert_all_equal(runs: list[VariantRun], samples: int) -> None:
     comparison = compare_runs(tuple(runs))
     assert comparison.equal, "\n".join(comparison.lines)
     assert len(runs[0].series) == samples
@@ -44,7 +44,7 @@ def assert_all_equal(runs: list[Run], samples: int) -> None:
 
 @pytest.mark.parametrize("scene", ["crossing_2d", "crossing_3d"])
 def test_solids_cross_borders_turn_and_meet(tmp_path: Path, scene: str) -> None:
-    finished = run(ROOT / "cases" / scene / "case.toml", tmp_path, Options(ranks=4, steps=STEPS))
+    finished = run_variant(ROOT / "cases" / scene / "case.toml", tmp_path, Options(ranks=4, steps=STEPS))
     solids, box = solids_of(finished), finished.scene["box"]["size"]
     long, short = "xyz"[len(box) - 1], "x"
     # Every solid comes further along the slabs than one of eight is wide, some further than half of the shorter side.
@@ -79,7 +79,7 @@ def closest_gap(solids: Table, box: list[float], radius: float) -> float:
     ],
 )
 def test_borders_that_follow_the_load_make_uneven_slabs(tmp_path: Path, scene: str, options: Options, axis: int) -> None:
-    finished = run(ROOT / "cases" / scene / "case.toml", tmp_path, options)
+    finished = run_variant(ROOT / "cases" / scene / "case.toml", tmp_path, options)
     borders = finished.record["borders"]
     assert [len(along) for along in borders] == [count + 1 for count in finished.record["domains"]]
     assert [along[-1] for along in borders] == pytest.approx(finished.scene["box"]["size"], rel=1e-12)
@@ -94,7 +94,7 @@ def test_borders_that_follow_the_load_make_uneven_slabs(tmp_path: Path, scene: s
 def test_fields_disorder_and_walls_of_two_directions(tmp_path: Path, scene: str, grid: str) -> None:
     variants = [Options(ranks=ranks) for ranks in (0, 1, 2, 3, 4)]
     variants += [Options(ranks=4, domains=grid), Options(ranks=1, threads=2)]
-    runs = [run(SCENES / f"{scene}.toml", tmp_path / str(i), options) for i, options in enumerate(variants)]
+    runs = [run_variant(SCENES / f"{scene}.toml", tmp_path / str(i), options) for i, options in enumerate(variants)]
     assert_all_equal(runs, samples={"fields_2d": 11, "fields_3d": 11, "cavity": 16}[scene])
     assert ("field of force" in runs[0].record["terms"]) == scene.startswith("fields")
 
@@ -104,17 +104,17 @@ def test_the_gas_solid_scene(tmp_path: Path) -> None:
     overrides = ("output.sample=50", "output.snapshot=0", "output.checkpoint=0")
     variants = [Options(ranks=ranks, steps=GAS_SOLID_STEPS, overrides=overrides) for ranks in (0, 2, 3)]
     variants.append(Options(ranks=4, domains="2x2", steps=GAS_SOLID_STEPS, overrides=overrides))
-    assert_all_equal([run(file, tmp_path / str(i), options) for i, options in enumerate(variants)], samples=9)
+    assert_all_equal([run_variant(file, tmp_path / str(i), options) for i, options in enumerate(variants)], samples=9)
 
 
 def test_a_restart_of_the_gas_solid_scene(tmp_path: Path) -> None:
     file = ROOT / "cases" / "gas_solid_small" / "case.toml"
     overrides = (f"output.checkpoint={GAS_SOLID_STEPS // 2}",)
-    through = run(file, tmp_path / "through", Options(ranks=2, steps=GAS_SOLID_STEPS, overrides=overrides))
-    run(file, tmp_path / "restarted", Options(ranks=4, steps=GAS_SOLID_STEPS // 2, overrides=overrides))
+    through = run_variant(file, tmp_path / "through", Options(ranks=2, steps=GAS_SOLID_STEPS, overrides=overrides))
+    run_variant(file, tmp_path / "restarted", Options(ranks=4, steps=GAS_SOLID_STEPS // 2, overrides=overrides))
     (checkpoint,) = (tmp_path / "restarted" / "checkpoints").iterdir()
     options = Options(ranks=3, steps=GAS_SOLID_STEPS, overrides=overrides, resume=checkpoint)
-    assert_all_equal([through, run(file, tmp_path / "restarted", options)], samples=9)
+    assert_all_equal([through, run_variant(file, tmp_path / "restarted", options)], samples=9)
 
 
 @pytest.mark.parametrize("scene", ["crossing_2d", "crossing_3d"])
@@ -123,12 +123,12 @@ def test_single_precision_has_the_same_bits_everywhere(tmp_path: Path, scene: st
     variants = [Options(ranks=ranks, steps=120, overrides=overrides) for ranks in (0, 1, 2, 4)]
     variants.append(Options(ranks=2, threads=2, steps=120, overrides=overrides))
     file = ROOT / "cases" / scene / "case.toml"
-    runs = [run(file, tmp_path / str(i), options) for i, options in enumerate(variants)]
+    runs = [run_variant(file, tmp_path / str(i), options) for i, options in enumerate(variants)]
     assert_all_equal(runs, samples=7)
     assert all("single precision of pairs" in finished.record["terms"] for finished in runs)
-    run(file, tmp_path / "restarted", Options(ranks=2, steps=60, overrides=overrides))
+    run_variant(file, tmp_path / "restarted", Options(ranks=2, steps=60, overrides=overrides))
     (checkpoint,) = (tmp_path / "restarted" / "checkpoints").iterdir()
-    resumed = run(file, tmp_path / "restarted", Options(ranks=4, steps=120, overrides=overrides, resume=checkpoint))
+    resumed = run_variant(file, tmp_path / "restarted", Options(ranks=4, steps=120, overrides=overrides, resume=checkpoint))
     assert_all_equal([runs[0], resumed], samples=7)
-    full = run(file, tmp_path / "double", Options(ranks=1, steps=120, overrides=overrides[1:]))
+    full = run_variant(file, tmp_path / "double", Options(ranks=1, steps=120, overrides=overrides[1:]))
     assert full.record["digest"] != runs[0].record["digest"]
