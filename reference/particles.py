@@ -229,7 +229,8 @@ def plan_of(scene: ParticleScene, limit: float, steps: int | None) -> Plan:
 Frame = tuple[float, np.ndarray, np.ndarray]  # time, points (n, D), velocity (n, D)
 
 
-def leave_frames(out: Path, scene: ParticleScene, particles: Particles, frames: Iterable[Frame], mass: float | None = None) -> None:
+def leave_frames(out: Path, scene: ParticleScene, particles: Particles, frames: Iterable[Frame],
+                 mass: float | None = None) -> None:
     """Writes the snapshots and series.csv of frames that are in the order of `particles`; mass, of one of them, by default
     that of the lattice."""
     mass = scene.mass if mass is None else mass

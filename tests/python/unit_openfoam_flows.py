@@ -15,7 +15,8 @@ from verification.protocol.scene import set_value
 
 def scene_of(**keys: object) -> ParticleScene:
     """Without a sound speed; further keys as body__0__position."""
-    scene = {"box": {"size": [1.25, 1.5]}, "fluid": {"density": 2.0, "viscosity": 0.2, "spacing": 0.125}, "run": {"duration": 1.0}}
+    fluid = {"density": 2.0, "viscosity": 0.2, "spacing": 0.125}
+    scene = {"box": {"size": [1.25, 1.5]}, "fluid": fluid, "run": {"duration": 1.0}}
     for key, value in keys.items():
         set_value(scene, key.replace("__", "."), value)
     return read_particle_scene(scene, sound=False)
