@@ -17,14 +17,15 @@ from pathlib import Path
 from bench.codes import own_speed
 from bench.meter import Broken, Meter, Row, Speed, median_rate, median_ratio, printed, row, run_benchmark
 from bench.speed import FLUIDS, QUICK_FLUIDS, scene_of, steps_for
+from verification.codes.code import find_code
 from verification.codes.mappm import Options, run
 from verification.protocol.machine import ROOT
 from verification.protocol.run import Run
 from verification.suite.case import Case
-from verification.suite.judge import measures
 from verification.suite.manifest import find_case
 from verification.suite.parameters import overrides_of
 from verification.suite.references import resolved
+from verification.suite.runner import measured
 
 SINGLE = 'fluid.precision="single"'
 FLOATING_SUMS = ROOT / "build" / "floating-sums" / "bin" / "bench-pair_numbers"
@@ -51,15 +52,14 @@ def of_speed(meter: Meter, quick: bool, folder: Path) -> list[Row]:
 
 def of_accuracy(case: Case, levels: int, folder: Path) -> list[Row]:
     """At each of the coarsest levels, in units of the answer."""
-    rows = []
+    rows, code = [], find_code("mappm")
     observable = resolved(case, None).observables[0]
-    measured = measures(case)[observable.name]
     for place, level in enumerate(case.levels_of("quick")[:levels]):
         values = {}
         for precision, more in (("double", ()), ("single", (SINGLE,))):
             options = Options(overrides=overrides_of(case, level.overrides) + more)
             finished = run(case.file, folder / case.name / f"{place}_{precision}", options)
-            values[precision] = measured(finished).value
+            values[precision] = measured(case, finished, code, with_charts=False).values[observable.name].value
         here, scale = {"case": case.name, "level": place}, abs(observable.reference) or 1.0
         rows += [row("spacing", float(finished.scene["fluid"]["spacing"]), **here),
                  row("double_off_the_answer", abs(values["double"] - observable.reference) / scale, **here),

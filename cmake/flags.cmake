@@ -12,6 +12,22 @@ target_compile_options(mappm_flags INTERFACE -ffp-contract=off -fno-math-errno)
 # It gets the instruction set too. Bits do not depend on that, but the width of lanes does, and with it the layout of
 # types of the parallel engine.
 string(TOUPPER "CMAKE_CXX_FLAGS_${CMAKE_BUILD_TYPE}" flags_of_type)
+
+# Some clang cannot compare the widest vectors of some libstdc++ (clang 19 with that of GCC 14): then it takes those of AVX2.
+# Results are the same bits.
+include(CheckCXXSourceCompiles)
+set(CMAKE_REQUIRED_FLAGS "${${flags_of_type}} -std=c++20")
+check_cxx_source_compiles("
+#include <experimental/simd>
+int main(int count, char**) {
+  const std::experimental::native_simd<double> x(count);
+  return std::experimental::any_of(x > 0.5 * x) ? 0 : 1;
+}" MAPPM_COMPILES_WIDEST_VECTORS)
+unset(CMAKE_REQUIRED_FLAGS)
+if(NOT MAPPM_COMPILES_WIDEST_VECTORS)
+  string(APPEND ${flags_of_type} " -mno-avx512f")
+endif()
+
 string(REGEX MATCHALL "-m[^ ]+" architecture "${CMAKE_CXX_FLAGS} ${${flags_of_type}}")
 target_compile_options(mappm_flags INTERFACE "$<INSTALL_INTERFACE:${architecture}>")
 

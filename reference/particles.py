@@ -113,7 +113,8 @@ def _wall(body: dict, dimension: int, number: int) -> Wall:
     if "extent" in body:
         limits = body["extent"]
         extent = ("xyz".index(limits["axis"]), _number(limits, "from", f"{at}.extent"), _number(limits, "to", f"{at}.extent"))
-    return Wall(axis, _number(body, "position", at), _number(body, "thickness", at), _vector(body.get("velocity", []), dimension), extent)
+    velocity = _vector(body.get("velocity", []), dimension)
+    return Wall(axis, _number(body, "position", at), _number(body, "thickness", at), velocity, extent)
 
 
 def read_particle_scene(scene: dict, sound: bool = True) -> ParticleScene:

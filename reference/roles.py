@@ -42,7 +42,7 @@ def parsed(parse: Callable[[list[str]], Parsed], given: list[str]) -> Parsed:
 
 
 def left_of(result: Result, out: Path) -> Left:
-    """Quantities, objection and table; a field, of the finest level, becomes the snapshot. Throws Cannot where a program is missing."""
+    """Quantities, objection and table; a field, of the finest level, becomes the snapshot. Throws Cannot where it is missing."""
     if result.missing:
         raise Cannot(result.missing)
     if result.field:
@@ -51,5 +51,5 @@ def left_of(result: Result, out: Path) -> Left:
             write_points(out, 0, 0.0, field["points"], field["velocity"])
         file.unlink()
     (out / RESULT).unlink(missing_ok=True)
-    return Left(quantities=result.quantities, objection=result.objection,
-                more={"inputs": result.inputs, "table": result.table, "program": result.version, "program_command": result.command})
+    more = {"inputs": result.inputs, "table": result.table, "program": result.version, "program_command": result.command}
+    return Left(quantities=result.quantities, objection=result.objection, more=more)

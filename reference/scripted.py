@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+PEERS = Path(__file__).resolve().parents[1] / ".venv-peers"  # an environment of their own, by ./setup --peers
 HEADER = 9  # lines of a frame of a dump before its particles
 
 
@@ -23,6 +24,12 @@ class Finished:
 
 class Failed(RuntimeError):
     """The program ended with an error: its own message."""
+
+
+def peer_version(name: str) -> str:
+    """Of a package in the environment of the peers, such as 2025.7.22.4.0; empty where it is not installed."""
+    found = next(PEERS.glob(f"lib/python3*/site-packages/{name}-*.dist-info"), None)
+    return found.name.removeprefix(f"{name}-").removesuffix(".dist-info") if found else ""
 
 
 def package_version(name: str) -> str:

@@ -50,7 +50,7 @@ def _run_alone(laboratory, case, code, arguments: argparse.Namespace) -> None:
 def run_named(arguments: argparse.Namespace) -> int:
     """In the laboratory named, or in one that starts empty and is removed."""
     if not arguments.scratch:
-        return _run_in(arguments.out, arguments)
+        return _run_in(arguments.lab, arguments)
     with tempfile.TemporaryDirectory() as folder:
         return _run_in(Path(folder), arguments)
 
@@ -135,7 +135,7 @@ def use_store(arguments: argparse.Namespace) -> int:
     from verification.store.commands import export_store, import_store, list_runs, prune, show
     from verification.store.laboratory import Laboratory
 
-    laboratory = Laboratory(arguments.out)
+    laboratory = Laboratory(arguments.lab)
     match arguments.what:
         case "list":
             return list_runs(laboratory.store, arguments.code)
@@ -154,13 +154,13 @@ def report(arguments: argparse.Namespace) -> int:
     from verification.store.laboratory import Laboratory
     from verification.suite.tier import make_tier
 
-    laboratory = Laboratory(arguments.out)
+    laboratory = Laboratory(arguments.lab)
     if not arguments.only_draw:
         make_tier(laboratory, arguments.tier)
     print("report: drawing", flush=True)
     from verification.report.report import draw_report  # drawing libraries load slowly
 
-    return draw_report(laboratory, arguments.tier, arguments.page, arguments.publish)
+    return draw_report(laboratory, arguments.tier, arguments.out, arguments.publish)
 
 
 def study(arguments: argparse.Namespace) -> int:
@@ -173,7 +173,7 @@ def study(arguments: argparse.Namespace) -> int:
         return 0
     from verification.store.laboratory import Laboratory
 
-    found, laboratory = find_study(arguments.name), Laboratory(arguments.out)
+    found, laboratory = find_study(arguments.name), Laboratory(arguments.lab)
     if not arguments.only_show:
         run_study(laboratory, found, arguments.jobs, _say)
     print("\n".join(lines_of(found, results_of(laboratory, found))))
@@ -187,8 +187,8 @@ def _ranks(text: str) -> list[int]:
     return ranks
 
 
-def _add_out(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--out", type=Path, default=LABORATORY, metavar="DIR", help="folder of the store and of the runs (default runs)")
+def _add_lab(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--lab", type=Path, default=LABORATORY, metavar="DIR", help="folder of the store and of the runs (default runs)")
 
 
 def _add_run(commands) -> None:
@@ -204,7 +204,7 @@ def _add_run(commands) -> None:
     one.add_argument("--jobs", type=int, default=cores(), metavar="K", help="runs of a case at a time (default: a core each)")
     one.add_argument("--anew", action="store_true", help="run also what the store has; its digest must come out again")
     one.add_argument("--scratch", action="store_true", help="in a store of its own, which starts empty and is removed")
-    _add_out(one)
+    _add_lab(one)
 
 
 def _add_store(commands) -> None:
@@ -218,7 +218,7 @@ def _add_store(commands) -> None:
     pruned = what.add_parser("prune", help="remove runs of other numerics versions than that of the programs")
     pruned.add_argument("--folders", action="store_true", help="remove the folders of all runs, and keep what the store holds of them")
     for parser in what.choices.values():
-        _add_out(parser)
+        _add_lab(parser)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -235,16 +235,16 @@ def _parser() -> argparse.ArgumentParser:
 
     report = commands.add_parser("report", help="run what is missing of the tier, then draw what the store holds")
     report.add_argument("--tier", choices=TIERS, default="quick")
-    report.add_argument("--page", type=Path, default=ROOT / "reports" / "out", metavar="DIR", help="folder of the page (default reports/out)")
+    report.add_argument("--out", type=Path, default=ROOT / "reports" / "out", metavar="DIR", help="folder of the page (default reports/out)")
     report.add_argument("--publish", action="store_true", help="also copy page, summary and the store as text to reports/published")
     report.add_argument("--only-draw", action="store_true", help="run nothing")
-    _add_out(report)
+    _add_lab(report)
 
     many = commands.add_parser("study", help="run what is missing of a study and print its table; without a name, list the studies")
     many.add_argument("name", nargs="?", help="CASE.NAME")
     many.add_argument("--jobs", type=int, default=cores(), metavar="K", help="runs at a time (default: a core each)")
     many.add_argument("--only-show", action="store_true", help="run nothing")
-    _add_out(many)
+    _add_lab(many)
 
     bits = commands.add_parser("compare-bits", help="compare digests of the serial reference and the parallel solver")
     bits.add_argument("scene", type=Path)

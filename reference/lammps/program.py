@@ -2,12 +2,11 @@
 
 from pathlib import Path
 
-from reference.scripted import Finished, run_in
+from reference.scripted import PEERS, Finished, peer_version, run_in
 from verification.protocol.quantity import Result
 
 CODE = "LAMMPS"
 SCRIPT = "in.lammps"
-PEERS = Path(__file__).resolve().parents[2] / ".venv-peers"
 MISSING = "LAMMPS is not in .venv-peers; ./setup --peers"
 
 
@@ -20,9 +19,7 @@ def installed() -> bool:
 
 
 def version() -> str:
-    """Of the package, such as 2025.7.22.4.0; empty where it is not installed."""
-    found = next(PEERS.glob("lib/python3*/site-packages/lammps-*.dist-info"), None)
-    return found.name.removeprefix("lammps-").removesuffix(".dist-info") if found else ""
+    return peer_version("lammps")
 
 
 def missing(command: str) -> Result:

@@ -30,7 +30,8 @@ def script_of(scene: ParticleScene, plan: Plan, background: float) -> str:
     """Reads START, writes DUMP. `background`: pressure at the density of the scene."""
     h, c, dimension = 0.5 * scene.reach, scene.sound_speed, scene.dimension
     kernel = "wendland2d" if dimension == 2 else "wendland"
-    corners = [f"0 {float(side)!r}" for side in scene.size] + [f"{-0.5 * scene.spacing!r} {0.5 * scene.spacing!r}"] * (3 - dimension)
+    deep = f"{-0.5 * scene.spacing!r} {0.5 * scene.spacing!r}"
+    corners = [f"0 {float(side)!r}" for side in scene.size] + [deep] * (3 - dimension)
     alpha = ALPHA[dimension] * scene.kinematic_viscosity / (c * h)
     rest = scene.density * (1 - background / (scene.density * c**2))
     return f"""units lj

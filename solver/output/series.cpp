@@ -59,8 +59,10 @@ Columns series_columns(const Model<D>& model, const UnitNames& units, const Tota
     angular_momentum[k] = static_cast<double>(totals.angular_momentum[k]) * angular;
   columns.add("angular_momentum", units.angular_momentum, angular_momentum);
   columns.add("fluid_particles", "", static_cast<std::uint64_t>(totals.fluid_count));
-  columns.add("lowest_density_ratio", "", totals.lowest_density / model.rest_density);
-  columns.add("highest_density_ratio", "", totals.highest_density / model.rest_density);
+  if (model.terms.fluid) {
+    columns.add("lowest_density_ratio", "", totals.lowest_density / model.rest_density);
+    columns.add("highest_density_ratio", "", totals.highest_density / model.rest_density);
+  }
   columns.add("momentum", "", totals.momentum);
   columns.add("impulse", "", totals.outside_impulse);
   columns.add("momentum_defect", "", momentum_defect(totals, start_momentum));

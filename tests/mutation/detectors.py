@@ -66,7 +66,7 @@ class Detector:
         match self.kind:
             case "case":
                 overrides = [word for setting in words[1:] for word in ("--set", setting)]
-                return [sys.executable, "-m", "verification", "run", words[0], "--out", f"{folder}/run", *overrides]
+                return [sys.executable, "-m", "verification", "run", words[0], "--lab", f"{folder}/run", *overrides]
             case "bits":
                 return [sys.executable, "-m", "tests.mutation.bits", f"{folder}/run", *words]
             case "pytest":

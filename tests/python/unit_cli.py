@@ -150,7 +150,7 @@ def test_the_judge_lists_and_runs_cases(tmp_path: Path) -> None:
     listed = verification("list")
     assert listed.returncode == 0
     assert {line.split()[0] for line in listed.stdout.splitlines()} >= {"gas_solid_small", "rest", "sphere_stokes.phi_0.064"}
-    judged = verification("run", "rest", "--out", str(tmp_path), "--set", "run.steps=10")
+    judged = verification("run", "rest", "--lab", str(tmp_path), "--set", "run.steps=10")
     assert judged.returncode == 0, judged.stderr
     assert judged.stdout.splitlines() == [
         "max(|v|) / c = 0 +- 0 (reference 0 +- 0, error 0, CORRECT by goal 0)",

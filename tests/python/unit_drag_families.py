@@ -1,44 +1,40 @@
 """Charts of drags over the points of a family. Oracles: drags of arrays published and made here."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
-from verification.measures.drag_families import by_reynolds, drag_errors, drag_of_one_sphere
-from verification.protocol.quantity import Measured
-from verification.suite.case import Observable
-from verification.suite.judge import Outcome
+from verification.measures.drag_families import by_reynolds, drag_errors, drag_of_one_sphere, fraction_of
+from verification.measures.measures import Point
+from verification.protocol.quantity import COVERAGE
 
 # Of a simple cubic array in Stokes flow: Zick and Homsy, J. Fluid Mech. 115, 1982, 13-26.
 STOKES = {0.216: 7.442, 0.027: 2.008, 0.125: 4.292, 0.064: 2.810}
 
 
-def result(fraction: float, reynolds: float, drag: float, value: float) -> SimpleNamespace:
+def point(fraction: float, reynolds: float, drag: float, value: float) -> Point:
     side = (4 * np.pi / 3 / fraction) ** (1 / 3)
     scene = {"box": {"size": [side] * 3}, "body": [{"radius": 1.0}],
              "fluid": {"reference_velocity": 1.0, "density": 1.0, "viscosity": 2 / reynolds}}
-    observable = Observable("drag", "F", drag, 0.0, "Zick and Homsy", 0.03)
-    return SimpleNamespace(case=SimpleNamespace(scene=scene, family="spheres"), outcomes=(Outcome(observable, Measured(value, 0.0), {"Mach": 0.01}),))
+    return Point("spheres", f"phi_{fraction}", scene, {}, {}, value, value / drag - 1, COVERAGE * 0.01, drag)
 
 
-RESULTS = [result(phi, 0.1, drag, 1.02 * drag) for phi, drag in STOKES.items()] + [result(0.125, 10.0, 4.4, 4.4)]
+POINTS = [point(phi, 0.1, drag, 1.02 * drag) for phi, drag in STOKES.items()] + [point(0.125, 10.0, 4.4, 4.4)]
 
 
 def test_points_are_sorted_by_reynolds_number_and_fraction() -> None:
-    found = by_reynolds(RESULTS)
+    found = by_reynolds(POINTS)
     assert list(found) == [0.1, 10.0]
-    assert [round(fraction, 9) for fraction, _ in found[0.1]] == [0.027, 0.064, 0.125, 0.216]
+    assert [round(fraction_of(one.scene), 9) for one in found[0.1]] == [0.027, 0.064, 0.125, 0.216]
 
 
 def test_errors_and_their_bars() -> None:
-    slow, fast = drag_errors(RESULTS).curves
+    slow, fast = drag_errors(POINTS).curves
     assert slow.y == pytest.approx(np.full(4, 2.0)) and fast.y == pytest.approx(np.zeros(1), abs=1e-12)
     assert slow.error == pytest.approx([100 * 0.02 / STOKES[phi] for phi in sorted(STOKES)])  # k = 2
 
 
 def test_one_sphere_alone_needs_three_cells_and_meets_stokes_law() -> None:
-    (chart,) = drag_of_one_sphere(RESULTS)  # none of Re 10
+    (chart,) = drag_of_one_sphere(POINTS)  # none of Re 10
     alone = chart.curves[-1]
     assert alone.y[0] == pytest.approx(1.02, abs=0.01)
     assert [curve.label for curve in chart.curves if curve.reference] == ["Stokes"]

@@ -1,5 +1,6 @@
 """Figures of benchmarks: queries, the way through store and export, and the charts of those published. Oracles: rows by hand."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ from verification.protocol.machine import ROOT
 from verification.report.page import _environment
 from verification.report.speed_charts import CHARTS
 from verification.store.export import export, import_into
-from verification.store.figures import Figures, NoFigure, benches_of, by_bench, read_benches
+from verification.store.figures import Figures, NoFigure, benches_of, read_benches
 from verification.store.store import Made, Store
 
 PUBLISHED = ROOT / "reports" / "published" / "bench.jsonl"
@@ -90,11 +91,19 @@ def test_a_benchmark_is_entered_in_place_of_the_one_before(figures: Figures) -> 
     assert found["speed"].value("lanes") == 4
 
 
-def test_measurements_at_two_times_are_not_mixed(figures: Figures) -> None:
-    later = Made("2026-02-01T00:00:00Z", "another machine", "def")
-    found = by_bench([*figures.rows, *entered("speed", [row("rate", 1.0, ranks=1)], later).rows])
-    assert found["speed"].made == later
-    assert len(found["speed"].rows) == 1
+def test_an_import_takes_the_later_measurement_whole(figures: Figures, tmp_path: Path) -> None:
+    """Figures of two times are never mixed, whichever is entered first."""
+    later = entered("speed", [row("rate", 1.0, fluid="plane", ranks=16), row("late", 2.0)], replace(MADE, made="2026-02-01T00:00:00Z"))
+    files = {"early": figures, "late": later}
+    for name, found in files.items():
+        store = Store(":memory:")
+        store.enter_figures(found.rows)
+        export(store, tmp_path / name)
+    for first, second, new in (("early", "late", 2), ("late", "early", 0), ("late", "late", 0)):
+        store = Store(":memory:")
+        assert import_into(store, tmp_path / first) == len(files[first].rows)
+        assert import_into(store, tmp_path / second) == new
+        assert benches_of(store)["speed"].rows == later.rows
 
 
 def test_the_published_export_is_as_the_store_writes_it(tmp_path: Path) -> None:

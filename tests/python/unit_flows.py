@@ -12,8 +12,8 @@ from verification.measures.fits import damped_oscillation
 from verification.measures.flows import Flow, read_flow
 from verification.measures.observables import viscosity
 from verification.protocol.run import Run
-from verification.suite.judge import measures
 from verification.suite.manifest import find_case
+from verification.suite.runner import measures_of
 
 PLANE, SPACE = [1.0, 1.0], [1.0, 1.0, 1.0]
 WAVE = {"wave": {"amplitude": 0.5, "direction": "z", "gradient": "x", "mode": 3}}
@@ -105,7 +105,7 @@ def test_field_error_leaves_out_the_sound_of_the_start_only(tmp_path: Path) -> N
 
     run = written(tmp_path, scene_of(table, PLANE), np.array([0.0, quarter]), velocity)
     # rms 0.01 / sqrt 2 beside an exact rms of 0.5 / sqrt 2: 2 %, to the sampling error of 400 points.
-    assert measures(find_case("taylor_green"))["field_error"](run).value == pytest.approx(0.02, rel=0.15)
+    assert measures_of(find_case("taylor_green").file.parent)["field_error"](run).value == pytest.approx(0.02, rel=0.15)
 
 
 def test_a_damped_oscillation_is_found_under_noise() -> None:
@@ -131,7 +131,7 @@ def test_sound_of_an_exact_wave(tmp_path: Path) -> None:
         return np.exp(-damping * time) * np.cos(frequency * time) * flow.amplitude * flow.shape(points)
 
     run = written(tmp_path, scene_of(table, PLANE), np.linspace(0.0, 0.4, 60), velocity)
-    known = measures(find_case("sound_wave"))
+    known = measures_of(find_case("sound_wave").file.parent)
     assert known["sound_speed"](run).value == pytest.approx(0.99, rel=1e-6)
     assert known["sound_damping"](run).value == pytest.approx(1.2, rel=1e-4)
 

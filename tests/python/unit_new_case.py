@@ -51,6 +51,7 @@ MEASURE = '''
 """Mean velocity at the end over that at the start."""
 
 from verification.measures.curve import Chart, Curve
+from verification.measures.measures import Measures, by_name
 from verification.protocol.quantity import Measured
 
 
@@ -60,6 +61,9 @@ def mean_velocity(run):
 
 def curves(run):
     return [Chart("velocity", "time", "u", (Curve("measured", run.series["time"], run.series["fluid_velocity_x"]),))]
+
+
+MEASURES = Measures(observables=by_name(mean_velocity), charts=curves)
 '''
 
 
@@ -87,7 +91,7 @@ def test_a_new_case_is_listed(cases: Path) -> None:
 def test_a_new_case_is_run_and_judged_by_its_own_measure(
     cases: Path, tmp_path: Path, name: str, code: int, verdict: str
 ) -> None:
-    ended = verification(cases, "run", name, "--out", str(tmp_path / "runs"))
+    ended = verification(cases, "run", name, "--lab", str(tmp_path / "runs"))
     assert ended.returncode == code, ended.stderr
     assert ended.stdout.startswith("u / u_0 = 1 ")
     assert verdict in ended.stdout

@@ -9,6 +9,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from support import ANY_CODE
 
 from verification.codes.mappm import program
 from verification.protocol.errors import CaseError
@@ -18,8 +19,8 @@ from verification.protocol.toml_text import scene_text, value_text
 from verification.suite.case import Case
 from verification.suite.manifest import all_cases, find_case, read_cases
 from verification.suite.parameters import derived, overrides_of, scene_of
-from verification.suite.references import live_command
-from verification.suite.runner import Job, run_jobs
+from verification.suite.references import reference_request
+from verification.suite.runner import Job
 
 MANIFEST = """
 units = "dimensionless"
@@ -124,16 +125,24 @@ def test_a_case_without_parameters_keeps_its_overrides() -> None:
     assert overrides_of(case, ("run.step=8e-8", "run.step=4e-8")) == ("run.step=8e-8", "run.step=4e-8")
 
 
-def test_runs_and_references_get_the_derived_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_runs_and_references_get_the_derived_scene(tmp_path: Path) -> None:
     (dense,) = read_cases(written(tmp_path))
-    job = Job(dense, (*dense.base, "R_over_dx=8"))
-    assert job.weight == pytest.approx(8.0)  # half the spacing: four times the PPs, twice the steps
-    seen = []
-    monkeypatch.setattr("verification.suite.runner.run", lambda file, folder, options: seen.append(options.overrides))
-    run_jobs([job], tmp_path / "out", type("Few", (), {"ranks": 1, "overrides": ("output.sample=1",)}), 1)
-    assert seen == [("box.size=[2.0, 2.0]", "fluid.spacing=0.125", "force.fluid=[0.75, 1.0]", "output.sample=1")]
-    line = live_command(dense, "quick", {}, tmp_path / "out")
-    assert "box.size=[2.0, 2.0]" in line and "fluid.spacing=0.2" in line and "phi=1" not in line
+    job = Job(dense, (*dense.base, "R_over_dx=8"), ANY_CODE)
+    assert job.weight == pytest.approx(80.0)  # its cost is 10; half the spacing: four times the PPs, twice the steps
+    assert job.label == "R_over_dx=8"
+    plain_scene = dense.plain | {"box": {"size": [2.0, 2.0]}, "force": {"fluid": [0.75, 1.0]}}
+    assert plain(job.request.scene) == plain(plain_scene | {"fluid": dense.plain["fluid"] | {"spacing": 0.125}})
+    reference = reference_request(dense, "quick", {}, ANY_CODE)
+    assert plain(reference.scene) == plain(plain_scene | {"fluid": dense.plain["fluid"] | {"spacing": 0.2}})
+
+
+def test_runs_of_one_derived_scene_are_one(tmp_path: Path) -> None:
+    """However it was asked for."""
+    (dense,) = read_cases(written(tmp_path))
+    keys = [Job(dense, sets, ANY_CODE).request.key for sets in
+            (("phi=1", "R_over_dx=8"), ("phi=1.0", "fluid.spacing=0.125"), ("box.size=[2, 2]", "force.fluid=[0.75, 1]", "R_over_dx=8"))]
+    assert keys == keys[:1] * 3
+    assert Job(dense, ("phi=1", "R_over_dx=9"), ANY_CODE).request.key != keys[0]
 
 
 @pytest.mark.parametrize(

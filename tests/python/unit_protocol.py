@@ -24,8 +24,8 @@ from verification.protocol.machine import ROOT
 from verification.protocol.points import write_points
 from verification.protocol.run import Run
 from verification.protocol.scene import fault_of, read_scene
-from verification.suite.judge import measures
 from verification.suite.manifest import find_case
+from verification.suite.runner import measures_of
 
 WAVE = ROOT / "verification" / "codes" / "scenes" / "shear_wave.toml"
 FLUID = frozenset({"fluid"})
@@ -50,7 +50,7 @@ def test_errors_of_exact_fields_are_rounding(name: str, exact: Code, tmp_path: P
     case = find_case(name)
     run = run_code(exact, case.file, tmp_path)
     for observable in (one for one in case.observables if "error" in one.name):
-        measured = measures(case)[observable.name](run)
+        measured = measures_of(case.file.parent)[observable.name](run)
         assert not measured.objection
         assert measured.value < 1e-12, observable.name
 
@@ -58,7 +58,7 @@ def test_errors_of_exact_fields_are_rounding(name: str, exact: Code, tmp_path: P
 def test_the_error_of_the_exact_channel_is_its_unfinished_start(exact: Code, tmp_path: Path) -> None:
     """The first mode, (32 / pi^3) exp(-pi^2 nu t / H^2) sin(pi y / H) of the largest velocity, its root mean square."""
     case = find_case("poiseuille")
-    measured = measures(case)["poiseuille"](run_code(exact, case.file, tmp_path))
+    measured = measures_of(case.file.parent)["poiseuille"](run_code(exact, case.file, tmp_path))
     assert measured.value == pytest.approx(32 / math.pi**3 * math.exp(-(math.pi**2) * 0.05 * 20.0) / math.sqrt(2), rel=1e-3)
 
 
@@ -380,7 +380,8 @@ def test_mappm_speaks_the_protocol(name: str, tmp_path: Path) -> None:
     assert run.record["steps"] == 20
     assert run.record["digest"] == run.series["digest"][-1]
     assert run.record["scene"]["text"] == WAVE.read_text()
-    assert run.record["cost"]["core_seconds"] >= run.record["wall_seconds"]["steps"] * 0.999
+    cost = run.record["cost"]  # in which the wall clock is no less than the processor's, on one core, but for the grain of that
+    assert 0 < cost["core_seconds"] <= cost["wall_seconds"] + 0.02
     assert velocity_error(run) < 0.01
 
 

@@ -12,6 +12,7 @@ from cases.falling_sphere.measure import added_mass, with_history
 from reference.stokes.history import History
 from reference.stokes.square_array import square_array
 from reference.stokes.unsteady_array import impedance, virtual_mass
+from verification.measures.measures import Values
 from verification.protocol.run import Run
 
 SCENE = """
@@ -68,11 +69,12 @@ def test_time_counts_from_the_release(tmp_path: Path) -> None:
 
 def test_liggghts_is_given_the_law_of_the_body_held_fixed(tmp_path: Path) -> None:
     free, held = run_of(tmp_path / "free", drift=-0.4), run_of(tmp_path / "held", motion="fixed")
-    options = measure.live_options({("a",): free, ("b",): held})
-    found = {options[i]: float(options[i + 1]) for i in (0, 2, 4)}
+    kept = [Values(run.scene, {name: figure(run) for name, figure in measure.MEASURES.figures.items()}) for run in (free, held)]
     release, law = measure.release_of(held), measure.measured_law(held)
-    assert found == pytest.approx({"--gamma": law.drag, "--force": release.force,
-                                   "--mass": release.reduced_mass + law.virtual_mass})  # fmt: skip
+    expected = {"gamma": law.drag, "force": release.force, "mass": release.reduced_mass + law.virtual_mass}
+    for runs in (kept, kept[::-1]):
+        found = measure.MEASURES.reference_options(runs)
+        assert {name: float(text) for name, text in found.items()} == pytest.approx(expected)
 
 
 def test_masses_of_the_two_body_problem() -> None:

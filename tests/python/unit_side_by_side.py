@@ -6,11 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from verification.protocol.quantity import Result
+from verification.protocol.points import write_points
+from verification.protocol.run import Run
 from verification.report.chapters import chapters_of, families_of
 from verification.report.figures import CaseFigures
 from verification.report.side_by_side import compare_fields, speeds
-from verification.suite.references import LiveRun
+from verification.suite.references import Reference
 
 SIDE, RADIUS = 2.0, 0.4
 SCENE = {"box": {"size": [SIDE, SIDE]}, "fluid": {"spacing": 0.05},
@@ -33,11 +34,11 @@ def scattered(seed: int, count: int) -> np.ndarray:
     return points[np.linalg.norm(offset, axis=1) > RADIUS]
 
 
-def both(folder: Path, factor: float) -> tuple[SimpleNamespace, LiveRun]:
+def both(folder: Path, factor: float) -> tuple[SimpleNamespace, Run]:
     ours, theirs = scattered(1, 6000), scattered(2, 9000)
-    np.savez(folder / "field.npz", points=theirs, velocity=factor * field(theirs))
+    write_points(folder, 0, 0.0, theirs, factor * field(theirs))
     run = SimpleNamespace(scene=SCENE, fluid=lambda: {"points": ours, "velocity": field(ours)})
-    return run, LiveRun(Result("Other", "1", field="field.npz"), folder)
+    return run, Run(folder)
 
 
 @pytest.mark.parametrize("factor", [1.0, 1.1])
@@ -50,23 +51,23 @@ def test_fields_are_brought_to_one_grid(tmp_path: Path, factor: float) -> None:
 
 
 def test_a_body_that_moves_is_seen_at_rest(tmp_path: Path) -> None:
-    fixed, live = both(tmp_path, 1.0)
+    fixed, other = both(tmp_path, 1.0)
     way, own = np.array([0.7, -1.3]), np.array([3.0, -2.0])
     body = SCENE["body"][0] | {"motion": "moving", "velocity": list(own)}
     at_rest = fixed.fluid()
     moved = {"points": np.mod(at_rest["points"] + way, SIDE), "velocity": at_rest["velocity"] + own}
     moving = SimpleNamespace(scene=SCENE | {"body": [body]}, fluid=lambda: moved,
                              solids=lambda: {"points": np.array([[*np.mod([0.1 + way[0], 1.0 + way[1]], SIDE), 0.0]])})
-    assert np.allclose(speeds(moving, live)[1], speeds(fixed, live)[1], atol=1e-6, equal_nan=True)
+    assert np.allclose(speeds(moving, other)[1], speeds(fixed, other)[1], atol=1e-6, equal_nan=True)
 
 
 def test_the_picture_is_written(tmp_path: Path) -> None:
-    compare_fields(*both(tmp_path, 1.1), "title", tmp_path / "beside.png")
+    compare_fields(*both(tmp_path, 1.1), "Other", "title", tmp_path / "beside.png")
     assert (tmp_path / "beside.png").stat().st_size > 10_000
 
 
 def result(name: str, holds: bool, code: str = "", rows: int = 1) -> SimpleNamespace:
-    live = SimpleNamespace(result=Result(code.capitalize())) if code else None
+    live = Reference(code.capitalize()) if code else None
     case = SimpleNamespace(name=name, family=name.partition(".")[0], live=SimpleNamespace(code=code) if code else None)
     outcomes = tuple(SimpleNamespace(observable=SimpleNamespace(live="drag" if code else "")) for _ in range(rows))
     return SimpleNamespace(case=case, holds=holds, live=live, outcomes=outcomes)

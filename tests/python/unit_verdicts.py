@@ -2,19 +2,23 @@
 
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from support import ANY_CODE
 
 from verification.protocol.errors import CaseError
+from verification.protocol.ledger import defects_of
 from verification.protocol.quantity import Measured
 from verification.protocol.series import Table
 from verification.report.history import changes
+from verification.store.store import Ledger
 from verification.suite.case import Observable, Vary
 from verification.suite.judge import CONVERGING, CORRECT, NOT_CONVERGING, OPEN, STALLED, WRONG, Outcome, _varied
-from verification.suite.ladder import converge, error_order, observed_order
+from verification.suite.ladder import converge, error_order, extrapolated, observed_order
 from verification.suite.manifest import read_cases
-from verification.suite.result import exactness
+from verification.suite.result import Exactness, exactness
 from verification.suite.runner import Job, jobs_of
 
 GIVEN = Observable("drag", "F", reference=50.0, uncertainty=0.0, source="nobody", goal=0.02)
@@ -47,6 +51,15 @@ def test_levels_that_swing_have_no_order_and_a_wider_index() -> None:
 
 def test_two_levels_give_an_index_without_order() -> None:
     assert converge([0.2, 0.1], [50.2, 50.1]).gci == pytest.approx(0.3)
+
+
+def test_a_level_that_is_no_number_has_no_order_and_no_limit() -> None:
+    h, values = [0.4, 0.2, 0.1], [50.3, math.nan, 50.1]
+    assert math.isnan(error_order(h, values)) and math.isnan(observed_order(h, values))
+    assert math.isnan(extrapolated(h, values).value) and math.isnan(converge(h, values).gci)
+    given = Observable("drag", "F", 50.0, 0.0, "nobody", goal=0.1, order=(1.5, 2.5))
+    levels = tuple(Measured(value, 0.0) for value in values)
+    assert not Outcome(given, levels[-1], {"resolution": 5.0}, tuple(h), levels).holds
 
 
 def outcome(value: float, sources: dict[str, float], observable: Observable = GIVEN, **more) -> Outcome:
@@ -165,11 +178,12 @@ label = "classic"
 set = ["fluid.method=classic"]
 """
     (case,) = read_cases(written(tmp_path, extra))
-    quick = [job.overrides for job in jobs_of(case, "quick")]
+    quick = [job.overrides for job in jobs_of(case, "quick", ANY_CODE)]
     assert quick == [("fluid.spacing=0.2",), (), ("run.step_factor=0.5",), ("fluid.method=classic",)]
-    full = [job.overrides for job in jobs_of(case, "full")]
+    full = [job.overrides for job in jobs_of(case, "full", ANY_CODE)]
     assert set(full) - set(quick) == {("fluid.spacing=0.05",)}
-    assert Job(case, ("fluid.spacing=0.05",)).weight == pytest.approx(8.0)  # half the spacing: four times the PPs, twice the steps
+    finer = Job(case, ("fluid.spacing=0.05",), ANY_CODE)
+    assert finer.weight == pytest.approx(80.0)  # its cost is 10; half the spacing: four times the PPs, twice the steps
 
 
 @pytest.mark.parametrize(
@@ -192,21 +206,30 @@ def test_a_bad_entry_is_refused_with_its_fix(tmp_path: Path, extra: str, message
     assert str(file) in str(caught.value) and message in str(caught.value)
 
 
-class Fake:
-    """What exactness reads of a run."""
-
-    def __init__(self, columns: dict[str, list], scene: dict | None = None) -> None:
-        self.series = Table({name: np.array(values) for name, values in columns.items()}, dict.fromkeys(columns, ""))
-        self.folder, self.scene = Path("fake"), scene or {}
+def ledger(columns: dict[str, list]) -> Ledger:
+    """Of a run with these columns in its series."""
+    table = Table({name: np.array(values) for name, values in columns.items()}, dict.fromkeys(columns, ""))
+    return Ledger(*defects_of(SimpleNamespace(series=table)))
 
 
 def test_a_momentum_defect_and_a_lost_particle_are_seen() -> None:
     exact = {"step": [0, 1], "momentum_defect_x": ["0", "0"], "fluid_particles": [9.0, 9.0]}
-    assert not exactness({(): Fake(exact)}).defects
-    (defect,) = exactness({(): Fake(exact | {"momentum_defect_x": ["0", "1"]})}).defects
-    assert defect == "fake: momentum - start - impulse: 1 at step 1, wrong at 1 of 2 samples"
-    (defect,) = exactness({(): Fake(exact | {"fluid_particles": [9.0, 8.0]})}).defects
-    assert defect == "fake: change of the number of PPs: 1 at step 1, wrong at 1 of 2 samples"
+    assert ledger(exact) == Ledger(2)
+    (defect,) = ledger(exact | {"momentum_defect_x": ["0", "1"]}).defects
+    assert defect == "momentum - start - impulse: 1 at step 1, wrong at 1 of 2 samples"
+    (defect,) = ledger(exact | {"momentum_defect_x": ["0", "0"], "momentum_defect_y": ["-2", "0"]}).defects
+    assert defect == "momentum - start - impulse: 2 at step 0, wrong at 1 of 2 samples"
+    (defect,) = ledger(exact | {"fluid_particles": [9.0, 8.0]}).defects
+    assert defect == "change of the number of PPs: 1 at step 1, wrong at 1 of 2 samples"
+
+
+def test_a_case_is_exact_where_all_its_runs_are() -> None:
+    def of(name: str, kept: Ledger | None) -> SimpleNamespace:
+        return SimpleNamespace(stored=SimpleNamespace(label=name, ledger=kept))
+
+    entries = {("a",): of("one", Ledger(3)), ("b",): of("two", Ledger(4)), ("c",): of("no ledger", None)}
+    assert exactness(entries) == Exactness(2, 7, ())
+    assert exactness(entries | {("d",): of("wrong", Ledger(1, ("a defect",)))}) == Exactness(3, 8, ("wrong: a defect",))
 
 
 def entry(error: float, uncertainty: float = 0.001, goal: float = 0.02) -> dict:

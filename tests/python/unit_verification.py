@@ -13,8 +13,9 @@ from verification.protocol.errors import CaseError
 from verification.protocol.quantity import Measured
 from verification.protocol.series import first_difference, read_table
 from verification.suite.case import Observable
-from verification.suite.judge import CORRECT, OPEN, WRONG, Outcome, measures
+from verification.suite.judge import CORRECT, OPEN, WRONG, Outcome
 from verification.suite.manifest import all_cases, read_cases
+from verification.suite.runner import measures_of
 
 TIME = np.linspace(0.0, 10.0, 501)
 
@@ -94,7 +95,7 @@ def test_every_case_has_a_sound_manifest() -> None:
     cases = all_cases()
     assert len(cases) >= 9
     for case in cases:
-        assert all(observable.name in measures(case) for observable in case.observables)
+        assert all(observable.name in measures_of(case.file.parent) for observable in case.observables)
         assert all(observable.goal >= 0.0 for observable in case.observables)
 
 

@@ -1,23 +1,15 @@
 """Measures of the cases with walls and contacts. Oracles: exact fields written here, with a known error added."""
 
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
+from support import measure_module as module
 from synthetic import Fields, Snapshot, scattered, synthetic_run
 
 from verification.measures.fits import values_at
-from verification.suite.judge import case_module
-from verification.suite.manifest import find_case
 
 TIME = np.linspace(0.0, 20.0, 401)
-
-
-def module(name: str) -> ModuleType:
-    found = case_module(find_case(name))
-    assert found is not None
-    return found
 
 
 def along_x(points: np.ndarray, u: np.ndarray) -> np.ndarray:
@@ -101,10 +93,11 @@ def test_a_profile_is_compared_at_the_time_it_has(tmp_path: Path) -> None:
     times = (0.0, 0.052, 0.104, 0.296, 2.0)  # H^2 / nu, whose unit is 2 here
     taken = tuple(Snapshot(2 * t, points, along_x(points, 0.5 * couette.start_up(points[:, 1], t))) for t in times[1:])
     run = synthetic_run(tmp_path, Fields(COUETTE, snapshots=(Snapshot(0.0, points, 0 * points), *taken)))
-    for measure in (couette.error_at_005, couette.error_at_01, couette.error_at_03):
-        assert measure(run).value < 1e-12
-        assert measure(run).objection == ""
-    assert "no snapshot near 1.0" in couette.error_at_1(run).objection
+    measures = couette.MEASURES.observables
+    for name in ("error_at_005", "error_at_01", "error_at_03"):
+        assert measures[name](run).value < 1e-12
+        assert measures[name](run).objection == ""
+    assert "no snapshot near 1.0" in measures["error_at_1"](run).objection
 
 
 DISC = """

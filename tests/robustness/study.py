@@ -22,7 +22,7 @@ TIMES = ("made", "machine", "source", "command", "core_seconds", "setup_core_sec
 
 
 def start(folder: Path, name: str) -> subprocess.Popen:
-    return subprocess.Popen([sys.executable, "-m", "verification", "study", name, "--out", str(folder)], cwd=ROOT,
+    return subprocess.Popen([sys.executable, "-m", "verification", "study", name, "--lab", str(folder)], cwd=ROOT,
                             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
 
 

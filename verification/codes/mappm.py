@@ -11,12 +11,15 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from verification.protocol.adapter import BAD_INPUT, Adapter, BadInput, Failed, Left, Task, core_seconds_of_children, main
 from verification.protocol.capability import CAPABILITIES
 from verification.protocol.errors import SolverError
 from verification.protocol.machine import ROOT
-from verification.protocol.run import Run
+
+if TYPE_CHECKING:
+    from verification.protocol.run import Run
 
 # Open MPI as root, and with more ranks than cores; threads that wait give way to other ranks.
 MPI_ENVIRONMENT = {
@@ -125,8 +128,10 @@ def start(scene: Path, out: Path, options: Options) -> subprocess.Popen:
     )
 
 
-def run(scene: Path, out: Path, options: Options = DEFAULT) -> Run:
+def run(scene: Path, out: Path, options: Options = DEFAULT) -> "Run":
     """Runs a scene to its end. Throws SolverError with the solver's message."""
+    from verification.protocol.run import Run  # loads slowly, and the adapter needs none of it
+
     process = start(scene, out, options)
     stdout, stderr = process.communicate()
     if process.returncode != 0:

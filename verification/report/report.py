@@ -18,6 +18,7 @@ from verification.report.page import write_page, write_summary
 from verification.report.provenance import checksum, provenance, reference_checksums
 from verification.report.speed_charts import CHARTS
 from verification.store.export import export, import_into
+from verification.store.figures import Figures, benches_of
 from verification.store.laboratory import Laboratory
 from verification.store.store import Store, StoredRun
 from verification.suite.judge import CORRECT, SKIPPED
@@ -118,10 +119,10 @@ def _publish(laboratory: Laboratory, page: Path, figures: list[Path], entry: dic
     (PUBLISHED / "history.json").write_text(json.dumps(history, indent=1) + "\n")
 
 
-def _benches(laboratory: Laboratory, shelf: Shelf) -> dict:
-    """Figures of each benchmark: those of this laboratory, or as published."""
-    found = {name: laboratory.store.figures(name) or shelf.store.figures(name) for name in CHARTS}
-    return {name: figures for name, figures in found.items() if figures}
+def _benches(laboratory: Laboratory, shelf: Shelf) -> dict[str, Figures]:
+    """Of each benchmark that has a chart: its figures in this laboratory, or as published."""
+    found = benches_of(shelf.store) | benches_of(laboratory.store)
+    return {name: found[name] for name in CHARTS if name in found}
 
 
 def draw_report(laboratory: Laboratory, tier: str, page: Path, publish: bool) -> int:

@@ -48,6 +48,14 @@ def import_store(store: Store, file: Path) -> int:
     return 0
 
 
+def _numerics_of(name: str) -> int | None:
+    """Of a code that is here; None where it is not."""
+    try:
+        return find_code(name).numerics_version
+    except CaseError:
+        return None
+
+
 def prune(laboratory: Laboratory, folders: bool) -> int:
     """Stale are runs of an older numerics version of a code that is here."""
     if folders:
@@ -57,7 +65,7 @@ def prune(laboratory: Laboratory, folders: bool) -> int:
     for run in laboratory.store.runs():
         if run.numerics is not None:
             if run.code not in versions:
-                versions[run.code] = find_code(run.code).numerics_version
+                versions[run.code] = _numerics_of(run.code)
             stale += [run.key] if versions[run.code] not in (None, run.numerics) else []
     print(f"{laboratory.store.remove(stale)} stale runs removed")
     return 0

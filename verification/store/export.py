@@ -19,8 +19,8 @@ def _line(value) -> str:
 def export(store: Store, file: Path) -> int:
     """Writes the file whole or not at all; returns its number of rows."""
     part, rows = file.with_name(file.name + ".part"), 0
-    file.parent.mkdir(parents=True, exist_ok=True)
     try:
+        file.parent.mkdir(parents=True, exist_ok=True)
         with part.open("w") as lines:
             lines.write(_line(HEAD) + "\n")
             for table, row in store.tables():
@@ -31,13 +31,14 @@ def export(store: Store, file: Path) -> int:
             os.fsync(lines.fileno())
         part.replace(file)
     except OSError as error:
-        part.unlink(missing_ok=True)
+        if part.is_file():
+            part.unlink()
         raise StoreError(f"{file}: {error.strerror}; free some space, or name another file") from None
     return rows
 
 
 def _rows(file: Path) -> Iterator[tuple[str, dict]]:
-    for number, line in enumerate(file.read_text().splitlines(), start=1):
+    for number, line in enumerate(file.read_text(errors="replace").splitlines() or [""], start=1):
         try:
             entry = json.loads(line)
             if number == 1:
@@ -45,10 +46,11 @@ def _rows(file: Path) -> Iterator[tuple[str, dict]]:
                     raise ValueError(f"the first line is not {_line(HEAD)}")
                 continue
             ((table, row),) = entry.items()
+            values = {name: _line(value) if name in PARSED else value for name, value in row.items()}
         except (ValueError, AttributeError) as error:
             raise StoreError(f"{file}:{number}: {error}; this is no export of a store, or it is cut off: take it again from "
                              "where it came from. Nothing was entered") from None
-        yield table, {name: _line(value) if name in PARSED else value for name, value in row.items()}
+        yield table, values
 
 
 def import_into(store: Store, file: Path) -> int:

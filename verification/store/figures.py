@@ -1,6 +1,6 @@
 """Figures of benchmarks, asked for by their names and settings."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 
 from verification.protocol.errors import StoreError
@@ -15,8 +15,8 @@ class NoFigure(StoreError, LookupError):
 
 
 def words_of(settings: dict[str, Setting]) -> str:
-    """For people: fluid=2d_39 ranks=1."""
-    return " ".join(f"{key}={value}" for key, value in settings.items())
+    """For people, by key: fluid=2d_39 ranks=1."""
+    return " ".join(f"{key}={settings[key]}" for key in sorted(settings))
 
 
 def _place(value: Setting) -> tuple[bool, float, str]:
@@ -72,18 +72,10 @@ class Figures:
         return sorted({row.settings[key] for row in self.rows if key in row.settings}, key=_place)
 
 
-def by_bench(rows: Sequence[Figure]) -> dict[str, Figures]:
-    """Of a benchmark that occurs at several times only the latest, so that measurements are never mixed."""
-    latest: dict[str, str] = {}
-    for row in rows:
-        latest[row.bench] = max(row.made.made, latest.get(row.bench, ""))
-    return {bench: Figures(bench, (row for row in rows if row.bench == bench and row.made.made == made))
-            for bench, made in latest.items()}
-
-
 def benches_of(store: Store) -> dict[str, Figures]:
     """By benchmark."""
-    return by_bench(store.figures())
+    rows = store.figures()
+    return {bench: Figures(bench, (row for row in rows if row.bench == bench)) for bench in dict.fromkeys(row.bench for row in rows)}
 
 
 def read_benches(file: Path) -> dict[str, Figures]:

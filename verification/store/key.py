@@ -12,7 +12,7 @@ NO_MATTER = ("case", "name")  # tables and keys of a scene that say nothing abou
 
 def canonical(value):
     """The same for the same values: whole numbers are integers, so that 1 and 1.0 are one; NaN and infinity are refused."""
-    if isinstance(value, bool) or isinstance(value, str):
+    if value is None or isinstance(value, (int, str)):  # True and False are integers, too
         return value
     if isinstance(value, Mapping):
         return {str(key): canonical(value[key]) for key in sorted(value)}
@@ -20,7 +20,7 @@ def canonical(value):
         return [canonical(one) for one in value]
     if value != value or value in (float("inf"), float("-inf")):
         raise ValueError(f"{value}: is no number that a scene can hold")
-    return int(value) if float(value).is_integer() and abs(value) < 2**53 else float(value)
+    return int(value) if value.is_integer() else value
 
 
 def canonical_scene(scene: Mapping) -> dict:

@@ -66,7 +66,7 @@ class Laboratory:
         try:
             (folder / "runs").mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise StoreError(f"{folder}: {error.strerror}; name another folder with --out") from None
+            raise StoreError(f"{folder}: {error.strerror}; name another folder with --lab") from None
         self.store = Store(folder / STORE)
 
     def run_folder(self, key: str) -> Path:
@@ -109,8 +109,15 @@ class Laboratory:
         with self._alone_at(key):
             known = self.store.run(key)
             if known is not None and not anew and not (folder_too and self.run(key) is None):
+                self._keep_field(request)
                 return known
             return self._make(request, known)
+
+    def _keep_field(self, request: Request) -> None:
+        """Of a run that was first made without, while its folder is there."""
+        run = self.run(request.key) if request.field else None
+        if run is not None and not any(name.startswith("snapshots/") for name in self.store.files(request.key)):
+            self.store.enter_files(request.key, kept_of(run, True))
 
     def _make(self, request: Request, known: StoredRun | None) -> StoredRun:
         folder, part = self.run_folder(request.key), self.run_folder(request.key + ".part")
@@ -119,27 +126,34 @@ class Laboratory:
         try:
             scene_file = part / "scene.toml"
             scene_file.write_text(scene_text(request.scene))
-            run_code(request.code, scene_file, part / "out", request.cores, request.steps, dict(request.options))
+            run = run_code(request.code, scene_file, part / "out", request.cores, request.steps, dict(request.options))
+            stored = self._stored(request, run, part)
+            self._compare(request, stored, known)
             shutil.rmtree(folder, ignore_errors=True)
-            (part / "out").replace(folder)
+            run.folder.replace(folder)
         finally:
             shutil.rmtree(part, ignore_errors=True)
-        stored, run = self._stored(request, Run(folder)), Run(folder)
+        self.store.enter(stored, kept_of(Run(folder), request.field))
+        return stored
+
+    @staticmethod
+    def _compare(request: Request, stored: StoredRun, known: StoredRun | None) -> None:
+        """Throws StoreError where the same run gave another digest before."""
         if known is not None and known.record.get("digest") != stored.record.get("digest"):
             raise StoreError(
                 f"{request.label}: the digest is {stored.record.get('digest')}, and was {known.record.get('digest')} at "
                 f"{known.made.source}: results changed without a new numerics version of {request.code.name}; raise that version, "
                 f"or remove what is stale with `store prune`")
-        self.store.enter(stored, kept_of(run, request.field))
-        return stored
 
     @staticmethod
-    def _stored(request: Request, run: Run) -> StoredRun:
+    def _stored(request: Request, run: Run, part: Path) -> StoredRun:
+        """Its command names the scene and the folder relative to where it ran."""
         record = {name: value for name, value in run.record.items() if name != "scene"}
+        record["command"] = record["command"].replace(f"{part}/", "")
         ledger = None
         if EXACT_LEDGER in request.code.capabilities:
             ledger = Ledger(*defects_of(run))
-        made = made_now(record.get("command", ""), record.get("commit"))
+        made = made_now(record["command"], record.get("commit"))
         return StoredRun(request.key, request.label, request.code.name, request.code.version, request.code.numerics_version,
                          plain(request.scene), request.steps, dict(request.options), record, made, ledger, cost_of(record))
 

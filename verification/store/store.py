@@ -191,11 +191,19 @@ class Store:
                 for table in ("measured", "charts"):
                     change.execute(f"DELETE FROM {table} WHERE key = ?", (run.key,))
             change.execute(f"INSERT OR REPLACE INTO runs VALUES ({','.join('?' * len(row))})", row)
-            change.execute("DELETE FROM files WHERE key = ?", (run.key,))
-            change.executemany("INSERT INTO files VALUES (?, ?, ?)",
-                               [(run.key, name, zlib.compress(data, 6)) for name, data in files.items()])
+            self._enter_files(change, run.key, files)
             if run.cost is not None:
                 self._enter_cost(change, run.key, run.cost, made)
+
+    @staticmethod
+    def _enter_files(change: sqlite3.Connection, key: str, files: Mapping[str, bytes]) -> None:
+        change.execute("DELETE FROM files WHERE key = ?", (key,))
+        change.executemany("INSERT INTO files VALUES (?, ?, ?)", [(key, name, zlib.compress(data, 6)) for name, data in files.items()])
+
+    def enter_files(self, key: str, files: Mapping[str, bytes]) -> None:
+        """In place of those that are kept of a run."""
+        with self._change() as change:
+            self._enter_files(change, key, files)
 
     @staticmethod
     def _enter_cost(change: sqlite3.Connection, key: str, cost: Cost, made: Made) -> None:
@@ -235,6 +243,10 @@ class Store:
 
     def files(self, key: str) -> dict[str, bytes]:
         return {name: zlib.decompress(data) for name, data in self._rows("SELECT name, data FROM files WHERE key = ?", key)}
+
+    def has_files(self, key: str) -> bool:
+        """Not of a run that was imported."""
+        return bool(self._rows("SELECT 1 FROM files WHERE key = ? LIMIT 1", key))
 
     # What was measured.
 
@@ -307,12 +319,18 @@ class Store:
                 yield table, dict(zip(names, row, strict=True))
 
     def enter_rows(self, rows: Iterable[tuple[str, dict]]) -> int:
-        """Of an export; rows that are here already stay as they are. Returns how many were new. All or nothing."""
+        """Of an export; rows that are here already stay as they are, and of a benchmark those that were made later, all of
+        them. Returns how many were new. All or nothing."""
         entered = 0
         with self._change() as change:
+            made = dict(change.execute("SELECT bench, max(made) FROM figures GROUP BY bench").fetchall())
             for table, row in rows:
                 if table not in EXPORTED:
                     raise StoreError(f"{table}: is no table of a store; known are {', '.join(EXPORTED)}")
+                if table == "figures" and row["bench"] in made:
+                    if row["made"] <= made[row["bench"]]:
+                        continue
+                    change.execute("DELETE FROM figures WHERE bench = ? AND made < ?", (row["bench"], row["made"]))
                 names = ", ".join(row)
                 cursor = change.execute(f"INSERT OR IGNORE INTO {table} ({names}) VALUES ({','.join('?' * len(row))})",
                                         tuple(row.values()))

@@ -44,7 +44,10 @@ def observed_order(h: list[float], values: list[float]) -> float:
 
 
 def error_order(h: list[float], errors: list[float]) -> float:
-    """Slope of log |error| over log h, by least squares over all levels: the order where the exact value is known."""
+    """Slope of log |error| over log h, by least squares over all levels: the order where the exact value is known. NaN where an
+    error is no number."""
+    if not all(map(math.isfinite, errors)):
+        return math.nan
     if min(abs(error) for error in errors) == 0.0:
         return math.inf
     slope, _ = np.polyfit(np.log(h), np.log(np.abs(errors)), 1)
@@ -82,7 +85,9 @@ def _fitted(h: np.ndarray, values: np.ndarray, order: int) -> tuple[float, float
 
 def extrapolated(h: list[float], values: list[float]) -> Extrapolated:
     """At least three levels. Richardson's value where they converge with an order that can be trusted; else, as scattered
-    levels have none, a + b h or a + b h^2, whichever fits all of them better."""
+    levels have none, a + b h or a + b h^2, whichever fits all of them better. NaN where a value is no number."""
+    if not all(map(math.isfinite, values)):
+        return Extrapolated(math.nan, 0.0, "no number on a level", len(values))
     found = converge(h, values)
     if LOWEST_ORDER <= found.order <= HIGHEST_ORDER:
         correction = abs(found.richardson - values[-1])

@@ -14,7 +14,7 @@ from verification.measures.curve import kept_chart
 from verification.measures.measures import Point, measures_in
 from verification.measures.source import measure_id
 from verification.protocol.quantity import COVERAGE
-from verification.store.key import hash_of
+from verification.store.key import canonical_scene, hash_of
 from verification.store.laboratory import Laboratory, made_now
 from verification.store.store import Found, Made
 from verification.suite.case import Case, Level
@@ -130,7 +130,7 @@ def exactness(entries: Entries) -> Exactness:
 
 def _bits_key(case: Case, code: Code) -> str:
     labels = [variant.label for variant in case.equivalence.variants]
-    return hash_of({"numerics": code.numerics_version, "scene": scene_of(case, case.base) | {"case": None},
+    return hash_of({"numerics": code.numerics_version, "scene": canonical_scene(scene_of(case, case.base)),
                     "steps": case.equivalence.steps, "every": case.equivalence.every, "variants": labels})[:24]
 
 

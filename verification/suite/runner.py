@@ -5,11 +5,12 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Protocol
 
 from verification.codes.code import Code
 from verification.measures.curve import kept_chart
-from verification.measures.measures import Measures, measures_in
+from verification.measures.measures import Measure, Measures, measures_in
 from verification.measures.observables import OBSERVABLES
 from verification.measures.source import measure_id
 from verification.protocol.errors import CaseError
@@ -94,9 +95,14 @@ def jobs_of(case: Case, tier: str, code: Code, cores: int = 1) -> list[Job]:
 # Measuring.
 
 
+def measures_of(folder: Path) -> dict[str, Measure]:
+    """By their names, those that all cases share and those of the case in a folder. Throws CaseError."""
+    return OBSERVABLES | dict(measures_in(folder).observables)
+
+
 def _names(case: Case, measures: Measures) -> list[str]:
     """Of what is measured of every run of a case. Throws CaseError where an observable does not exist."""
-    known = OBSERVABLES | dict(measures.observables)
+    known = measures_of(case.file.parent)
     names = list(dict.fromkeys(observable.name for observable in case.observables if not observable.skipped))
     for name in names:
         if name not in known:
@@ -105,14 +111,14 @@ def _names(case: Case, measures: Measures) -> list[str]:
     return names + [FIGURE + name for name in measures.figures]
 
 
-def _value(name: str, measures: Measures, run: Run, code: Code) -> Measured:
+def _value(name: str, case: Case, run: Run) -> Measured:
     """A figure that the code states itself under that name counts in place of a measure."""
     if name.startswith(FIGURE):
-        return Measured(float(measures.figures[name.removeprefix(FIGURE)](run)), 0.0)
+        return Measured(float(measures_in(case.file.parent).figures[name.removeprefix(FIGURE)](run)), 0.0)
     stated = run.record.get("quantities", {}).get(name)
     if stated is not None:
         return Measured(stated["value"], stated["uncertainty"], run.record.get("objection", ""))
-    return (OBSERVABLES | dict(measures.observables))[name](run)
+    return measures_of(case.file.parent)[name](run)
 
 
 def measured(case: Case, run: Run, code: Code, with_charts: bool) -> Found:
@@ -121,7 +127,7 @@ def measured(case: Case, run: Run, code: Code, with_charts: bool) -> Found:
     values = {}
     for name in _names(case, measures):
         try:
-            values[name] = _value(name, measures, run, code)
+            values[name] = _value(name, case, run)
         except (KeyError, IndexError, FileNotFoundError) as error:
             raise CaseError(f"{case.name}: {name} by {code.name}: {error} in {run.folder}") from error
     charts = {}
@@ -131,15 +137,15 @@ def measured(case: Case, run: Run, code: Code, with_charts: bool) -> Found:
 
 
 def look_up(laboratory: Shelf, job: Job) -> Entry | None:
-    """What the store has of a job; None where the run or something measured of it is missing."""
+    """What the store has of a job; None where the run or something measured of it is missing. What was imported has no charts."""
     stored = laboratory.store.run(job.request.key)
     if stored is None:
         return None
     measures = measures_in(job.case.file.parent)
     found = laboratory.store.found(stored.key, measure_id(job.case.file.parent))
     whole = all(name in found.values for name in _names(job.case, measures))
-    whole = whole and not (job.finest and measures.charts is not None and OWN not in found.charts)
-    return Entry(stored, found) if whole else None
+    undrawn = job.finest and measures.charts is not None and OWN not in found.charts
+    return None if not whole or (undrawn and laboratory.store.has_files(stored.key)) else Entry(stored, found)
 
 
 def obtain(laboratory: Laboratory, job: Job, anew: bool = False) -> Entry:
