@@ -16,10 +16,11 @@ import pytest
 from tiny_code import SCENE, Tiny, tiny
 
 from verification.codes.code import find_code
-from verification.measures.source import measure_id, sources_of
+from verification.measures.source import measure_id
 from verification.protocol.errors import Beyond, StoreError
 from verification.protocol.machine import ROOT
 from verification.protocol.quantity import Measured
+from verification.protocol.sources import sources_of
 from verification.store.commands import prune
 from verification.store.export import export, import_into
 from verification.store.key import canonical, canonical_scene, hash_of, run_key
@@ -485,7 +486,8 @@ def test_the_id_of_a_measure_follows_its_sources_and_tables(tmp_path: Path, monk
     for name in ("observables", "fits", "flows"):
         (measures / f"{name}.py").write_text("import verification.measures.histories\n" if name == "fits" else "")
     (measures / "histories.py").write_text("")
-    monkeypatch.setattr("verification.measures.source.ROOT", tmp_path)
+    for module in ("measures.source", "protocol.sources"):
+        monkeypatch.setattr(f"verification.{module}.ROOT", tmp_path)
 
     def identity() -> str:
         sources_of.cache_clear()

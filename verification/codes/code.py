@@ -1,14 +1,13 @@
 """A code: a program that speaks the protocol (verification/protocol/README.md), asked what it is, and run."""
 
-import hashlib
+import functools
 import json
 import os
 import re
 import signal
 import subprocess
 import sys
-from ast import Import, ImportFrom, parse, walk
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,10 +17,11 @@ from verification.protocol.check import check_run
 from verification.protocol.errors import Beyond, CaseError, SolverError
 from verification.protocol.machine import ROOT
 from verification.protocol.run import Run
+from verification.protocol.sources import checksum_of_sources, sources_of
 
 FOLDER = Path(__file__).resolve().parent
 SPEAKS = re.compile(r'^if __name__ == "__main__":$', re.MULTILINE)
-OWN = ("reference", "verification.protocol", "verification.codes")  # modules that an adapter's answers may depend on
+OWN = ("reference", "verification.codes")  # packages that the results of an adapter may depend on
 PATIENCE = 60.0  # seconds that describe may take, and that a run may take to end when told to
 
 
@@ -47,11 +47,12 @@ def all_codes() -> list[str]:
 def find_code(name_or_path: str | Path) -> Code:
     """One of all_codes(), or the path of an executable or of a .py file, which this interpreter runs. Throws CaseError."""
     program, file = _program(str(name_or_path))
-    said = _described(program)
+    adapter = checksum_of_sources(sources_of((file,), OWN))
+    said = _described(program, adapter, os.environ.get("MAPPM_BUILD", ""))
     if file.parent == FOLDER and said["name"] != str(name_or_path):
         raise CaseError(f"{file} describe: name = {said['name']!r}: must be that of its file, {name_or_path}")
     return Code(said["name"], said.get("title", said["name"]), program, said["version"], frozenset(said["capabilities"]), said["missing"],
-                said.get("numerics_version"), _checksum(file))
+                said.get("numerics_version"), adapter)
 
 
 def _program(name: str) -> tuple[tuple[str, ...], Path]:
@@ -74,8 +75,9 @@ def _environment() -> dict[str, str]:
     return os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")]))}
 
 
-def _described(program: tuple[str, ...]) -> dict:
-    """What `describe` says, checked. Throws CaseError."""
+@functools.cache
+def _described(program: tuple[str, ...], adapter: str, build: str) -> dict:
+    """What `describe` says, checked; asked once for an adapter and a build of MaPPM. Throws CaseError."""
     line = f"{' '.join(program)} describe"
     try:
         done = subprocess.run([*program, "describe"], env=_environment(), capture_output=True, text=True, timeout=PATIENCE)
@@ -112,33 +114,6 @@ def _fault(said: object) -> str:
     if number is not None and (not isinstance(number, int) or isinstance(number, bool)):
         return f"numerics_version = {number!r}: must be an integer"
     return ""
-
-
-def _imports(file: Path) -> Iterator[Path]:
-    """Files of the modules of OWN that a Python file imports, and of the packages that hold them."""
-    for node in walk(parse(file.read_text())):
-        names = [alias.name for alias in node.names] if isinstance(node, Import) else []
-        if isinstance(node, ImportFrom) and node.module:
-            names = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
-        for name in names:
-            if name.startswith(tuple(f"{own}." for own in OWN)):
-                place = ROOT / name.replace(".", "/")
-                yield from (path for path in (place.with_suffix(".py"), place / "__init__.py") if path.is_file())
-
-
-def _checksum(file: Path) -> str:
-    """SHA-256 over an adapter and, where it is Python, all that it imports from OWN, in the order of their names."""
-    found, waiting = set(), [file]
-    while waiting:
-        one = waiting.pop()
-        if one not in found:
-            found.add(one)
-            waiting += _imports(one) if one.suffix == ".py" else []
-    named = {str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else path.name: path for path in found}
-    whole = hashlib.sha256()
-    for name, path in sorted(named.items()):
-        whole.update(name.encode() + b"\0" + path.read_bytes() + b"\0")
-    return whole.hexdigest()
 
 
 def _last_line(text: str) -> str:
