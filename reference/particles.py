@@ -1,8 +1,8 @@
 """A scene as codes of particles start it: fluid and plane walls on one lattice, and what they leave in the files of the protocol.
 
-Shared by LAMMPS, LIGGGHTS and PySPH; OpenFOAM reads scenes by it too. Numbers are those of the scene, in SI where it has units. The lattice is that of the solver:
-whole cells along each side, a particle in the middle of each; those inside a wall are the wall. The disorder of a scene is drawn
-alike but not from the same random numbers.
+Shared by LAMMPS, LIGGGHTS and PySPH; OpenFOAM reads scenes by it too. Numbers are those of the scene, in SI where it has units.
+The lattice is that of the solver: whole cells along each side, a particle in the middle of each; those inside a wall are the
+wall. The disorder of a scene is drawn alike but not from the same random numbers.
 """
 
 import math
