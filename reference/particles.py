@@ -1,8 +1,8 @@
 """A scene as codes of particles start it: fluid and plane walls on one lattice, and what they leave in the files of the protocol.
 
-Shared by LAMMPS, LIGGGHTS and PySPH. Numbers are those of the scene, in SI where it has units. The lattice is that of the solver:
-whole cells along each side, a particle in the middle of each; those inside a wall are the wall. The disorder of a scene is drawn
-alike but not from the same random numbers.
+Shared by LAMMPS, LIGGGHTS and PySPH; OpenFOAM reads scenes by it too. Numbers are those of the scene, in SI where it has units.
+The lattice is that of the solver: whole cells along each side, a particle in the middle of each; those inside a wall are the
+wall. The disorder of a scene is drawn alike but not from the same random numbers.
 """
 
 import math
@@ -230,7 +230,8 @@ def plan_of(scene: ParticleScene, limit: float, steps: int | None) -> Plan:
 Frame = tuple[float, np.ndarray, np.ndarray]  # time, points (n, D), velocity (n, D)
 
 
-def leave_frames(out: Path, scene: ParticleScene, particles: Particles, frames: Iterable[Frame], mass: float | None = None) -> None:
+def leave_frames(out: Path, scene: ParticleScene, particles: Particles, frames: Iterable[Frame],
+                 mass: float | None = None) -> None:
     """Writes the snapshots and series.csv of frames that are in the order of `particles`; mass, of one of them, by default
     that of the lattice."""
     mass = scene.mass if mass is None else mass

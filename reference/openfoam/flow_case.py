@@ -12,7 +12,7 @@ from reference.openfoam.room import Room
 PROGRAM = "pimpleFoam"
 OUTER = 2  # times that momentum and pressure are solved in a step: with one, fluxes would lag and be of first order in time
 CORRECTORS = 2  # pressures each time: with one, the iteration diverges where friction is strong, nu dt / h^2 above about 0.5
-COUPLING = 1  # of the fluxes to the velocities of the steps before; by default it is limited, and of less than first order in time
+COUPLING = 1  # of fluxes to the velocities of the steps before; by default it is limited, and of less than first order in time
 
 
 @dataclass(frozen=True)
@@ -44,9 +44,8 @@ interpolationSchemes {{ default linear; }}
 snGradSchemes {{ default orthogonal; }}"""
 
 SOLUTION = f"""solvers {{
-p {{ solver GAMG; smoother GaussSeidel; tolerance 1e-6; relTol 0.01; }}
-pFinal {{ $p; relTol 0; }}
-U {{ solver smoothSolver; smoother symGaussSeidel; tolerance 1e-11; relTol 0.01; }}
+"p|pFinal" {{ solver GAMG; smoother GaussSeidel; tolerance 1e-6; relTol 0.01; }}
+U {{ solver PBiCGStab; preconditioner DILU; tolerance 1e-11; relTol 0.01; }}
 UFinal {{ $U; relTol 0; }} }}
 PIMPLE {{ nOuterCorrectors {OUTER}; nCorrectors {CORRECTORS}; nNonOrthogonalCorrectors 0; pRefCell 0; pRefValue 0; }}"""
 

@@ -15,7 +15,8 @@ from verification.protocol.scene import set_value
 
 def scene_of(**keys: object) -> ParticleScene:
     """Without a sound speed; further keys as body__0__position."""
-    scene = {"box": {"size": [1.25, 1.5]}, "fluid": {"density": 2.0, "viscosity": 0.2, "spacing": 0.125}, "run": {"duration": 1.0}}
+    fluid = {"density": 2.0, "viscosity": 0.2, "spacing": 0.125}
+    scene = {"box": {"size": [1.25, 1.5]}, "fluid": fluid, "run": {"duration": 1.0}}
     for key, value in keys.items():
         set_value(scene, key.replace("__", "."), value)
     return read_particle_scene(scene, sound=False)
@@ -75,13 +76,13 @@ def test_x_runs_first_over_the_cells() -> None:
 
 def test_the_step_is_by_the_speed_or_by_friction() -> None:
     """nu = 0.1, h = 0.125: friction alone gives FRICTION h / (2 nu pi) in a channel of width 1."""
-    channel = [LID, wall("y", 1.25)]
+    channel = [LID | {"velocity": [0.1, 0.0]}, wall("y", 1.25)]
     slow = scene_of(body=channel)
     assert largest_step(slow, room_of(slow), np.zeros((1, 2))) == pytest.approx(FRICTION * 0.125 / (0.2 * np.pi))
     fast = scene_of(body=[LID | {"velocity": [50.0, 0.0]}, channel[1]])
     assert largest_step(fast, room_of(fast), np.zeros((1, 2))) == pytest.approx(COURANT * 0.125 / 50)
     driven = scene_of(body=channel, force={"fluid": [100.0, 0.0]})  # to g t = 100, less than g H^2 / (8 nu)
-    assert largest_step(driven, room_of(driven), np.zeros((1, 2))) == pytest.approx(COURANT * 0.125 / (0.5 + 100))
+    assert largest_step(driven, room_of(driven), np.zeros((1, 2))) == pytest.approx(COURANT * 0.125 / (0.1 + 100))
 
 
 def test_steps_meet_the_end_and_forty_times_before() -> None:
