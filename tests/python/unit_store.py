@@ -236,15 +236,21 @@ def test_what_a_store_has_stays_where_an_export_says_otherwise(full: Store, tmp_
     assert other.run("a").label == "mine" and other.run("b").label == "label of b"
 
 
+def with_last(text: str, line: str) -> str:
+    """With another last line."""
+    return "\n".join([*text.splitlines()[:-1], line]) + "\n"
+
+
 @pytest.mark.parametrize(("change", "words"), [
     (lambda text: text[: len(text) // 2], r"store.jsonl:\d+: .*cut off: take it again"),
     (lambda text: "", "store.jsonl:1: .*no export of a store"),
     (lambda text: "\n".join(text.splitlines()[1:]), "store.jsonl:1: the first line is not"),
     (lambda text: text.replace('"format":1', '"format":2'), "the first line is not"),
-    (lambda text: text + '{"runs":3}\n', "no export of a store"),
-    (lambda text: text + "[]\n", "no export of a store"),
-    (lambda text: text + '{"sqlite_master":{"name":"x"}}\n', "sqlite_master: is no table of a store; known are runs, measured"),
-    (lambda text: text + '{"runs":{"keys":"x"}}\n', "no column named keys")])
+    (lambda text: "\n".join(text.splitlines()[:-1]) + "\n", "of so many rows as follow"),
+    (lambda text: with_last(text, '{"runs":3}'), "no export of a store"),
+    (lambda text: with_last(text, "[]"), "no export of a store"),
+    (lambda text: with_last(text, '{"sqlite_master":{"name":"x"}}'), "sqlite_master: is no table of a store; known are runs, measured"),
+    (lambda text: with_last(text, '{"runs":{"keys":"x"}}'), "no column named keys")])
 def test_an_export_that_is_broken_enters_nothing(full: Store, tmp_path: Path, change, words: str) -> None:
     file, other = tmp_path / "store.jsonl", Store(":memory:")
     export(full, file)

@@ -8,7 +8,6 @@ from pathlib import Path
 from verification.protocol.errors import StoreError
 from verification.store.store import FORMAT, Store
 
-HEAD = {"store": "MaPPM", "format": FORMAT}
 PARSED = ("scene", "options", "record", "ledger", "data", "settings")  # columns that hold JSON
 
 
@@ -16,17 +15,23 @@ def _line(value) -> str:
     return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
 
 
+def _head(rows: int) -> dict:
+    """The first line; the number of rows tells an export that was cut off."""
+    return {"store": "MaPPM", "format": FORMAT, "rows": rows}
+
+
+def _row_line(table: str, row: dict) -> str:
+    kept = {name: json.loads(value) if name in PARSED else value for name, value in row.items() if value is not None}
+    return _line({table: kept})
+
+
 def export(store: Store, file: Path) -> int:
     """Writes the file whole or not at all; returns its number of rows."""
-    part, rows = file.with_name(file.name + ".part"), 0
+    part, rows = file.with_name(file.name + ".part"), [_row_line(table, row) for table, row in store.tables()]
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         with part.open("w") as lines:
-            lines.write(_line(HEAD) + "\n")
-            for table, row in store.tables():
-                kept = {name: json.loads(value) if name in PARSED and value is not None else value for name, value in row.items()}
-                lines.write(_line({table: {name: value for name, value in kept.items() if value is not None}}) + "\n")
-                rows += 1
+            lines.write("\n".join([_line(_head(len(rows))), *rows]) + "\n")
             lines.flush()
             os.fsync(lines.fileno())
         part.replace(file)
@@ -34,16 +39,17 @@ def export(store: Store, file: Path) -> int:
         if part.is_file():
             part.unlink()
         raise StoreError(f"{file}: {error.strerror}; free some space, or name another file") from None
-    return rows
+    return len(rows)
 
 
 def _rows(file: Path) -> Iterator[tuple[str, dict]]:
-    for number, line in enumerate(file.read_text(errors="replace").splitlines() or [""], start=1):
+    lines = file.read_text(errors="replace").splitlines() or [""]
+    for number, line in enumerate(lines, start=1):
         try:
             entry = json.loads(line)
             if number == 1:
-                if entry != HEAD:
-                    raise ValueError(f"the first line is not {_line(HEAD)}")
+                if entry != _head(len(lines) - 1):
+                    raise ValueError(f"the first line is not {_line(_head(len(lines) - 1))}, of so many rows as follow")
                 continue
             ((table, row),) = entry.items()
             values = {name: _line(value) if name in PARSED else value for name, value in row.items()}

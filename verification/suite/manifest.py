@@ -210,7 +210,7 @@ def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
             raise CaseError(f"{at}.set = {list(base)}: no such key: {error}") from None
         found.append(replace(
             case, name=f"{case.name}.{_entry(table, 'name', str, at)}", base=base, scene=scene,
-            tier=_choice(table, "tier", TIERS, at, case.tier), cost=float(_entry(table, "cost", NUMBER, at, case.cost)),
+            tier=_choice(table, "tier", TIERS, at, case.tier), cost=_cost(table, at, case.cost),
             levels=tuple(replace(level, overrides=base + level.overrides) for level in case.levels),
             stalls=stalls or case.stalls,
             observables=tuple(replace(one, order=None) for one in case.observables) if stalls else case.observables,
@@ -227,6 +227,13 @@ def _check_sets(case: Case, where: str) -> None:
     named += [(f"beside[{i}]", beside.overrides) for i, beside in enumerate(case.beside)]
     for name, sets in named:
         split(sets, case.parameters, case.plain, f"{where}.{name}")
+
+
+def _cost(table: dict, where: str, default: float | None = None) -> float:
+    cost = float(_entry(table, "cost", NUMBER, where, default))
+    if cost <= 0:
+        raise CaseError(f"{where}.cost = {table['cost']!r}: must be above 0")
+    return cost
 
 
 def _all_of(table: dict, key: str, read, where: str) -> tuple:
@@ -261,7 +268,7 @@ def read_cases(file: Path) -> list[Case]:
         file=file,
         purpose=" ".join(_entry(table, "purpose", str, where).split()),
         tier=_choice(table, "tier", TIERS, where),
-        cost=float(_entry(table, "cost", NUMBER, where)),
+        cost=_cost(table, where),
         equations=_texts(table, "equations", where, []),
         refined=_choice(table, "refined", REFINED, where, "spacing"),
         stalls=" ".join(_entry(table, "stalls", str, where, "").split()),

@@ -1,5 +1,6 @@
 """Every code on every case that it can do: error and core-seconds at one resolution, that of the finest quick level."""
 
+import re
 from dataclasses import dataclass, replace
 
 from verification.codes.code import Code, all_codes, find_code
@@ -12,6 +13,7 @@ from verification.suite.manifest import all_cases
 from verification.suite.references import resolved
 from verification.suite.runner import Job, Shelf, look_up, obtain
 
+KILLED = re.compile(r"^ended with -\d", re.MULTILINE)  # by a signal
 NOT_PEERS = ("exact", "mappm-reference")  # the dummy, and the same solver again
 
 
@@ -70,13 +72,17 @@ def missing_of_table(shelf: Shelf) -> list[Job]:
     return jobs
 
 
-def make(laboratory: Laboratory, job: Job) -> None:
-    """A code that cannot do the scene, or fails on it, is remembered with its words."""
+def make(laboratory: Laboratory, job: Job) -> str:
+    """Returns why there is no result; empty where there is one. A scene that the code cannot do, or on which it always fails, is
+    remembered; one that was killed is tried again."""
     try:
         obtain(laboratory, job)
     except (Beyond, SolverError, CaseError) as error:
         words = str(error).strip().splitlines()[-1]
-        laboratory.store.enter_refusal(job.request.key, job.request.label, job.code.name, words)
+        if not KILLED.search(str(error)):
+            laboratory.store.enter_refusal(job.request.key, job.request.label, job.code.name, words)
+        return words
+    return ""
 
 
 def _cell(shelf: Shelf, case: Case, code: Code) -> Cell:
