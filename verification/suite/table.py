@@ -1,4 +1,4 @@
-"""Every code on every case that it can do: error and core-seconds at one resolution, that of the finest quick level."""
+"""Every code on every case that it can do: error and core-seconds at one resolution, that of the coarsest level."""
 
 import re
 from dataclasses import dataclass, replace
@@ -52,7 +52,7 @@ def table_cases() -> list[Case]:
 def _job(case: Case, code: Code) -> Job:
     """Throws Beyond. All codes are asked the same: no observable that another code is the reference of, and none of the knobs of
     one code."""
-    level = case.quick_finest()
+    level = case.levels_of("quick")[0]
     asked = able(case, code)
     observables = tuple(replace(one, order=None, extrapolated=None) for one in asked.observables if not one.live)[:1]
     return Job(replace(asked, observables=observables, live=None, vary=(), beside=()), level.overrides, code)
