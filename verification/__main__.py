@@ -1,6 +1,7 @@
 """The laboratory's command line: cases, codes, the store, the report. See README.md of this folder."""
 
 import argparse
+import signal
 import sys
 import tempfile
 import textwrap
@@ -283,9 +284,17 @@ def _called(arguments: argparse.Namespace) -> int:
             return study(arguments)
 
 
+def _stopped(number: int, frame: object) -> None:
+    raise KeyboardInterrupt
+
+
 def main() -> int:
+    signal.signal(signal.SIGTERM, _stopped)
     try:
         return _called(_parser().parse_args())
+    except KeyboardInterrupt:
+        print("verification: stopped; what was made before is in the store", file=sys.stderr)
+        return 130
     except (CaseError, SolverError, StoreError, Beyond) as error:
         print(f"verification: {error}", file=sys.stderr)
         return 1

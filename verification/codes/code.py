@@ -143,15 +143,27 @@ def _end(process: subprocess.Popen) -> None:
             continue
 
 
+_RUNNING: set[subprocess.Popen] = set()
+
+
+def end_all() -> None:
+    """Ends all programs that run now, of all threads: their calls return with the status of a killed program."""
+    for process in list(_RUNNING):
+        _end(process)
+
+
 def call(line: list[str]) -> tuple[int, str, str]:
     """Runs a line in a session of its own, which ends when this one is interrupted: (exit status, stdout, stderr)."""
     process = subprocess.Popen(line, env=_environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                start_new_session=True)
+    _RUNNING.add(process)
     try:
         stdout, stderr = process.communicate()
     except BaseException:
         _end(process)
         raise
+    finally:
+        _RUNNING.discard(process)
     return process.returncode, stdout, stderr
 
 

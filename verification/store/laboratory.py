@@ -8,6 +8,7 @@ import fcntl
 import json
 import os
 import shutil
+import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -120,8 +121,9 @@ class Laboratory:
             self.store.enter_files(request.key, kept_of(run, True))
 
     def _make(self, request: Request, known: StoredRun | None) -> StoredRun:
-        folder, part = self.run_folder(request.key), self.run_folder(request.key + ".part")
-        shutil.rmtree(part, ignore_errors=True)  # of one that was killed: whoever is here is alone
+        folder, part = self.run_folder(request.key), self.run_folder(f"{request.key}.{os.getpid()}-{time.monotonic_ns()}.part")
+        for left in (self.folder / "runs").glob(f"{request.key}.*.part"):  # by one that was killed: whoever is here is alone
+            shutil.rmtree(left, ignore_errors=True)
         part.mkdir(parents=True)
         try:
             scene_file = part / "scene.toml"

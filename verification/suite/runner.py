@@ -2,13 +2,14 @@
 
 import os
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from verification.codes.code import Code
+from verification.codes.code import Code, end_all
 from verification.measures.curve import kept_chart
 from verification.measures.measures import Measure, Measures, measures_in
 from verification.measures.observables import OBSERVABLES
@@ -158,6 +159,18 @@ def obtain(laboratory: Laboratory, job: Job, anew: bool = False) -> Entry:
     return Entry(stored, found)
 
 
+@contextmanager
+def workers_of(count: int) -> Iterator[ThreadPoolExecutor]:
+    """Threads that make runs. An error or an interruption ends what runs, and drops what waits."""
+    with ThreadPoolExecutor(max(1, min(count, os.cpu_count() or 1))) as pool:
+        try:
+            yield pool
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            end_all()
+            raise
+
+
 Told = Callable[[Job, float], None]
 
 
@@ -180,11 +193,6 @@ def perform(laboratory: Laboratory, jobs: list[Job], workers: int, told: Told = 
             told(job, behind / total)
 
     ordered = sorted(waiting, key=lambda job: weights[id(job)], reverse=not cheapest_first)
-    with ThreadPoolExecutor(max(1, min(workers, os.cpu_count() or 1))) as pool:
-        futures = [pool.submit(one, job) for job in ordered]
-        try:
-            for future in futures:
-                future.result()
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
+    with workers_of(workers) as pool:
+        for future in [pool.submit(one, job) for job in ordered]:
+            future.result()

@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 
 from verification.codes.code import Code, find_code
 from verification.protocol.machine import cores
@@ -12,7 +11,7 @@ from verification.suite.manifest import all_cases, find_case
 from verification.suite.parameters import scene_of
 from verification.suite.progress import Progress
 from verification.suite.result import finish, obtain_bits
-from verification.suite.runner import Job, jobs_of, perform
+from verification.suite.runner import Job, jobs_of, perform, workers_of
 from verification.suite.table import make, missing_of_table
 
 SHOWN = "gas_solid_small"  # the scene of the long run that the report shows
@@ -49,7 +48,7 @@ def _with_time(say: Say, words: Callable[[Job], str]) -> Callable[[Job, float], 
 
 def _references(laboratory: Laboratory, cases: list[Case], tier: str, code: Code, say: Say) -> None:
     """Several at a time."""
-    with ThreadPoolExecutor(cores()) as pool:
+    with workers_of(cores()) as pool:
         futures = {case.name: pool.submit(finish, laboratory, case, tier, code) for case in cases}
         for done, (name, future) in enumerate(futures.items(), start=1):
             future.result()
@@ -58,7 +57,7 @@ def _references(laboratory: Laboratory, cases: list[Case], tier: str, code: Code
 
 def _table(laboratory: Laboratory, say: Say) -> None:
     jobs = missing_of_table(laboratory)
-    with ThreadPoolExecutor(cores()) as pool:
+    with workers_of(cores()) as pool:
         for done, (job, future) in enumerate([(job, pool.submit(make, laboratory, job)) for job in jobs], start=1):
             future.result()
             say(f"{done} of {len(jobs)}, last {job.code.name} on {job.case.name}")
