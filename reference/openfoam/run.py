@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from reference.openfoam.soundness import fault_of_openfoam
+
 PROJECT = "/usr/share/openfoam"  # Debian's; the only variable that its programs need
 HOW_TO_GET = "apt-get install openfoam"
 
@@ -15,9 +17,11 @@ class FailedRun(Exception):
 
 
 def missing_of(programs: tuple[str, ...], how: str = HOW_TO_GET) -> str:
-    """Which of these are not installed, and how to get them; empty if all are."""
+    """Which of these are not installed, and how to get them, or why OpenFOAM cannot be used; empty if all is well."""
     absent = [program for program in programs if shutil.which(program) is None]
-    return f"{', '.join(absent)} not found; {how}" if absent else ""
+    if absent:
+        return f"{', '.join(absent)} not found; {how}"
+    return fault_of_openfoam((("WM_PROJECT_DIR", os.environ.get("WM_PROJECT_DIR", PROJECT)),)) if set(programs) - {"gmsh"} else ""
 
 
 def run(folder: Path, *command: str) -> float:

@@ -22,7 +22,8 @@ from verification.protocol.machine import ROOT
 from verification.protocol.run import Run
 
 SCENE = ROOT / "cases" / "crossing_2d" / "case.toml"
-PATIENT = {"OMPI_MCA_odls_base_sigkill_timeout": "10"}  # mpirun kills a second after SIGTERM: short on a loaded machine
+# mpirun kills a second after SIGTERM, which is short on a loaded machine; the second name is that of Open MPI 5.
+PATIENT = {f"{prefix}_MCA_odls_base_sigkill_timeout": "10" for prefix in ("OMPI", "PRTE")}
 LAST_LINE = re.compile(r"digest [0-9a-f]{16} step 20 particles \d+ ranks (\d) particle-steps/s [0-9.e+]+")
 
 
