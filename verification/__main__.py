@@ -57,7 +57,7 @@ def run_named(arguments: argparse.Namespace) -> int:
 
 
 def _run_in(folder: Path, arguments: argparse.Namespace) -> int:
-    """The case, or all its points of the tier. Returns 0, 1 where something does not hold, else 77 where something was skipped."""
+    """The case, or all its points of the tier. Returns 0, 1 where something does not hold and is not explained, else 77 where something was skipped."""
     from verification.codes.code import find_code
     from verification.store.laboratory import Laboratory
     from verification.suite.ability import able
@@ -76,7 +76,7 @@ def _run_in(folder: Path, arguments: argparse.Namespace) -> int:
         print(f"SKIPPED: {code.missing}")
         return SKIPPED_CODE
     way = Way(arguments.ranks, arguments.jobs, arguments.anew)
-    holds, skipped = True, False
+    passes, skipped = True, False
     for case in found:
         before = f"{case.name}: " if len(found) > 1 else ""
         try:
@@ -92,9 +92,9 @@ def _run_in(folder: Path, arguments: argparse.Namespace) -> int:
             print(f"{before}SKIPPED: {error}")
             skipped = True
             continue
-        holds, skipped = holds and result.holds, skipped or bool(result.skipped)
+        passes, skipped = passes and result.passes, skipped or bool(result.skipped)
         print("\n".join(before + line for line in result.lines), flush=True)
-    return 1 if not holds else SKIPPED_CODE if skipped else 0
+    return 1 if not passes else SKIPPED_CODE if skipped else 0
 
 
 def show_scene(name: str, sets: list[str]) -> int:

@@ -241,3 +241,13 @@ def test_the_trend_names_what_moved_by_more_than_its_uncertainty() -> None:
     found = changes(before, {"a": entry(0.0105), "b": entry(0.015), "c": entry(0.0)})
     assert {row["key"]: row["what"] for row in found} == {"b": "moved", "gone": "no longer judged", "c": "new"}
     assert changes([], {"a": entry(1.0)}) == []
+
+
+def test_a_miss_that_is_explained_stays_wrong_and_says_why() -> None:
+    known = Observable("drag", "F", 1.0, 0.0, "made up", goal=0.01, explained="the lattice resists")
+    missed, met = Outcome(known, Measured(1.1, 0.0)), Outcome(known, Measured(1.001, 0.0))
+    assert missed.verdict == WRONG and not missed.holds and missed.passes
+    assert "beyond the goal 1 %; explained: the lattice resists" in missed.line
+    assert met.verdict == CORRECT and met.holds and not met.explained and "explained" not in met.line
+    unknown = Outcome(Observable("drag", "F", 1.0, 0.0, "made up", goal=0.01), Measured(1.1, 0.0))
+    assert not unknown.passes

@@ -111,6 +111,16 @@ class Outcome:
         """Nothing speaks against it. What was skipped neither passes nor fails."""
         return self.verdict in (CORRECT, SKIPPED) and self.convergence_verdict != NOT_CONVERGING
 
+    @property
+    def explained(self) -> str:
+        """Why it is WRONG, where the manifest knows."""
+        return self.observable.explained if self.verdict == WRONG and self.convergence_verdict != NOT_CONVERGING else ""
+
+    @property
+    def passes(self) -> bool:
+        """It holds, or its miss is explained."""
+        return self.holds or bool(self.explained)
+
     def in_words(self, value: float) -> str:
         return f"{100 * value:.2g} %" if self.observable.reference else f"{value:.2g}"
 
@@ -130,7 +140,8 @@ class Outcome:
         if math.isnan(self.error):
             return "not a number"
         if abs(self.error) > self.observable.goal:
-            return f"beyond the goal {self.in_words(self.observable.goal)}"
+            why = f"; explained: {self.explained}" if self.explained else ""
+            return f"beyond the goal {self.in_words(self.observable.goal)}{why}"
         return f"within the goal, but not explained by its uncertainty (k u = {self.in_words(self.tolerance)})"
 
     @property

@@ -79,9 +79,21 @@ class CaseResult:
         return self.bits.faces if self.bits else None
 
     @property
+    def _exact(self) -> bool:
+        return not self.exact.defects and (self.bits is None or (self.bits.matrix.equal and self.bits.faces.exact))
+
+    @property
     def holds(self) -> bool:
-        exact = not self.exact.defects and (self.bits is None or (self.bits.matrix.equal and self.bits.faces.exact))
-        return exact and all(outcome.holds for outcome in self.outcomes)
+        return self._exact and all(outcome.holds for outcome in self.outcomes)
+
+    @property
+    def passes(self) -> bool:
+        """All holds but for misses that are explained."""
+        return self._exact and all(outcome.passes for outcome in self.outcomes)
+
+    @property
+    def explained(self) -> tuple[Outcome, ...]:
+        return tuple(outcome for outcome in self.outcomes if outcome.explained)
 
     @property
     def finest(self) -> Entry:
