@@ -74,7 +74,7 @@ def _shown(laboratory: Laboratory) -> tuple[StoredRun, int]:
     """The long run, and its steps: of the full tier where that is there."""
     for tier in ("full", "quick"):
         request = shown_request(tier)
-        if (stored := laboratory.store.run(request.key)) is not None:
+        if (stored := laboratory.store.run(request.key)) is not None and laboratory.store.has_files(request.key):
             return stored, SHOWN_STEPS[tier]
     raise StoreError(f"{laboratory.store.file}: has no long run of {SHOWN}; leave out --only-draw")
 

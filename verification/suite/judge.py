@@ -113,8 +113,9 @@ class Outcome:
 
     @property
     def explained(self) -> str:
-        """Why it is WRONG, where the manifest knows."""
-        return self.observable.explained if self.verdict == WRONG and self.convergence_verdict != NOT_CONVERGING else ""
+        """Why it is WRONG, where the manifest knows. What is not a number has no such excuse."""
+        known = self.verdict == WRONG and not math.isnan(self.error) and self.convergence_verdict != NOT_CONVERGING
+        return self.observable.explained if known else ""
 
     @property
     def passes(self) -> bool:

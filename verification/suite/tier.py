@@ -77,6 +77,7 @@ def make_tier(laboratory: Laboratory, tier: str) -> None:
         with progress.stage(f"bits of {case.name}") as say:
             obtain_bits(laboratory, case, code, say)
     with progress.stage(f"{SHOWN}, {SHOWN_STEPS[tier]} steps on {SHOWN_RANKS} processes"):
-        laboratory.obtain(shown_request(tier))
+        shown = shown_request(tier)
+        laboratory.obtain(shown, folder_too=not laboratory.store.has_files(shown.key))  # an import brings no series and no field
     with progress.stage("other codes on the same cases") as say:
         _table(laboratory, say)
