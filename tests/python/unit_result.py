@@ -115,11 +115,27 @@ def test_bits_are_found_again_as_they_were_compared(tmp_path: Path, monkeypatch:
     assert [look_up_bits(laboratory, one, code) for one in others] == [None, None]
 
 
-def test_a_matrix_with_a_variant_that_was_skipped_is_not_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_matrix_with_a_variant_that_was_skipped_is_run_again_where_that_can_be_had(tmp_path: Path,
+                                                                                     monkeypatch: pytest.MonkeyPatch) -> None:
     laboratory, case, code = Laboratory(tmp_path), find_case("crossing_2d"), replace(ANY_CODE, numerics_version=2)
-    compared(monkeypatch, *ROWS, Row("build clang", skipped="not built"))
-    assert obtain_bits(laboratory, case, code, print).matrix.rows[-1].skipped
-    assert look_up_bits(laboratory, case, code) is None
+    label = case.equivalence.variants[-1].label
+    compared(monkeypatch, *ROWS, Row(label, skipped="not built"))
+    first = obtain_bits(laboratory, case, code, print)
+    assert first.matrix.rows[-1].skipped and look_up_bits(laboratory, case, code) == first
+    compared(monkeypatch, *ROWS, Row(label, "0001", samples=2))
+    monkeypatch.setattr(result, "obstacle", lambda variant: "not built")
+    assert obtain_bits(laboratory, case, code, print) == first
+    monkeypatch.setattr(result, "obstacle", lambda variant: "")
+    assert not obtain_bits(laboratory, case, code, print).matrix.rows[-1].skipped
+
+
+def test_bits_that_differ_are_kept_and_compared_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    laboratory, case, code = Laboratory(tmp_path), find_case("crossing_2d"), replace(ANY_CODE, numerics_version=2)
+    compared(monkeypatch, *ROWS, Row("P=3", "0002", difference=5, samples=2))
+    assert not obtain_bits(laboratory, case, code, print).matrix.equal
+    assert not look_up_bits(laboratory, case, code).matrix.equal
+    compared(monkeypatch, *ROWS)
+    assert obtain_bits(laboratory, case, code, print).matrix.equal
 
 # --- what is there, and what was published
 

@@ -188,7 +188,7 @@ def _series(scene: Path, variant: Variant, steps: int, every: int, folder: Path)
     return run(scene, folder, replace(options, ranks=variant.resumed_on, resume=checkpoint)).series
 
 
-def _obstacle(variant: Variant) -> str:
+def obstacle(variant: Variant) -> str:
     """Why it cannot be run here; empty where it can."""
     name, build, isa = "mappm" if variant.options.ranks else "mappm-reference", variant.options.build, variant.options.isa
     try:
@@ -215,7 +215,7 @@ def run_matrix(scene: Path, equivalence: Equivalence, out: Path, say: Callable[[
     rows: list[Row] = []
     reference: Table | None = None
     for index, variant in enumerate(equivalence.variants):
-        skipped = _obstacle(variant)
+        skipped = obstacle(variant)
         if skipped and reference is None:
             raise SolverError(f"{variant.label}: {skipped}")  # nothing to compare with
         if skipped:

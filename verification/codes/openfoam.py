@@ -4,19 +4,22 @@
         [--option stored=[FILE]] [--option transient=] [--option end=T]
 
 The problems and options are those of python3 -m reference.openfoam. Meshes follow the surface; the level, not the scene, says how
-fine they are. Without `problem` the scene itself is run, by reference/openfoam/flows.py.
+fine they are. Without `problem` the scene itself is run on a mesh as wide as its spacing: flows over time by reference/openfoam/flows.py,
+one body by the steady solver, which states its drag.
 """
 
 import shlex
 import sys
 
 from reference.openfoam import __main__ as program
+from reference.openfoam.cell import read_cell
+from reference.openfoam.drag import drag_at
 from reference.openfoam.errors import InputError
 from reference.openfoam.flows import subject
 from reference.openfoam.run import FailedRun, missing_of
 from reference.roles import PROBLEM, arguments_of, left_of, parsed
 from reference.scripted import package_version
-from verification.protocol.adapter import Adapter, BadInput, Failed, Left, Task, main
+from verification.protocol.adapter import Adapter, BadInput, Cannot, Failed, Left, Task, main
 from verification.protocol.capability import FIXED_BODY, FLUID, FORCE_ON_BODY, MOVING_BODY, SPACE, WALLS
 from verification.protocol.quantity import read_result
 
@@ -39,6 +42,22 @@ def reference(task: Task) -> Left:
     return left_of(read_result(task.out), task.out)
 
 
+def drag(task: Task) -> Left:
+    """On one body that is held, or driven, in a periodic cell, at the resolution of the scene. Throws Cannot and Failed."""
+    try:
+        return left_of(drag_at(read_cell(task.file, []), float(task.scene["fluid"]["spacing"]), task.out), task.out)
+    except InputError as error:
+        raise Cannot(str(error)) from None
+    except FailedRun as error:
+        raise Failed(str(error)) from None
+
+
+def as_it_stands(task: Task) -> Left:
+    """Throws BadInput, Cannot or Failed."""
+    has_bodies = any(body["shape"] != "wall" for body in task.scene.get("body", []))
+    return drag(task) if has_bodies else subject(task)
+
+
 class OpenFoam(Adapter):
     name = "openfoam"
     capabilities = frozenset({FLUID, SPACE, WALLS, FIXED_BODY, MOVING_BODY, FORCE_ON_BODY})
@@ -50,7 +69,7 @@ class OpenFoam(Adapter):
         return missing_of(("blockMesh", "checkMesh", "simpleFoam", "pimpleFoam", "postProcess"))
 
     def run(self, task: Task) -> Left:
-        return reference(task) if PROBLEM in task.options else subject(task)
+        return reference(task) if PROBLEM in task.options else as_it_stands(task)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from verification.bits.conservation import Conservation, conservation
-from verification.bits.equivalence import Matrix, Row, run_matrix
+from verification.bits.equivalence import Matrix, Row, obstacle, run_matrix
 from verification.codes.code import Code, find_code
 from verification.codes.mappm import Options, run
 from verification.measures.curve import kept_chart
@@ -161,18 +161,23 @@ def look_up_bits(laboratory: Shelf, case: Case, code: Code) -> Bits | None:
     return _bits(*found) if found else None
 
 
+def _settled(case: Case, bits: Bits) -> bool:
+    """Whether to run it again would tell nothing new."""
+    skipped = {row.variant for row in bits.matrix.rows if row.skipped}
+    return bits.matrix.equal and bits.faces.exact and all(obstacle(one) for one in case.equivalence.variants if one.label in skipped)
+
+
 def obtain_bits(laboratory: Laboratory, case: Case, code: Code, say: Say, anew: bool = False) -> Bits:
-    """From the store, or run now: the matrix, and the faces at every tenth step. One with a skipped variant is not kept, so that it is
-    run again where that can be had."""
-    if not anew and (known := look_up_bits(laboratory, case, code)) is not None:
+    """From the store, or run now: the matrix, and the faces at every tenth step. What does not hold is run again, and so is a matrix
+    with a variant that was skipped and can now be had."""
+    if not anew and (known := look_up_bits(laboratory, case, code)) is not None and _settled(case, known):
         return known
     with TemporaryDirectory(dir=laboratory.folder) as scratch:
         matrix = run_matrix(case.file, case.equivalence, Path(scratch) / "matrix", say)
         options = Options(ranks=FACES_RANKS, steps=min(FACES_STEPS, case.equivalence.steps), faces=True, overrides=("output.sample=10",))
         faces = conservation(run(case.file, Path(scratch) / "faces", options))
     made = made_now()
-    if not any(row.skipped for row in matrix.rows):
-        laboratory.store.enter_matrix(_bits_key(case, code), case.name, _kept_bits(matrix, faces), made)
+    laboratory.store.enter_matrix(_bits_key(case, code), case.name, _kept_bits(matrix, faces), made)
     return Bits(matrix, faces, made)
 
 
