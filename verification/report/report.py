@@ -47,15 +47,23 @@ def published() -> Shelf:
     return Shelf(store)
 
 
+def _agrees(laboratory: Laboratory, published: CaseResult) -> bool:
+    """Whether the runs that this laboratory has as well gave the same digests here."""
+    pairs = [(entry.stored, laboratory.store.run(entry.stored.key)) for entry in published.entries.values()]
+    return all(here is None or here.record.get("digest") == there.record.get("digest") for there, here in pairs)
+
+
 def _result(laboratory: Laboratory, shelf: Shelf, case) -> CaseResult | None:
-    """At the finest tier that is whole: of this laboratory, or, of the full tier alone, as published."""
+    """At the finest tier that is whole: of this laboratory, or, of the full tier alone, as published. What was published counts
+    only where nothing here speaks against it: a quick tier that fails, or another digest of one of its runs."""
     code = subject()
-    for tier, place in (("full", laboratory), ("full", shelf), ("quick", laboratory)):
-        if tier == "full" or case.tier == "quick":
-            result = collect(place, case, tier, code)
-            if result is not None:
-                return result
-    return None
+    if (full := collect(laboratory, case, "full", code)) is not None:
+        return full
+    quick = collect(laboratory, case, "quick", code) if case.tier == "quick" else None
+    if quick is not None and not quick.passes:
+        return quick
+    published = collect(shelf, case, "full", code)
+    return published if published is not None and _agrees(laboratory, published) else quick
 
 
 def results_of(laboratory: Laboratory, shelf: Shelf) -> tuple[list[CaseResult], list[str]]:
@@ -109,12 +117,24 @@ def _results_json(tier: str, origin: dict[str, str], results: list[CaseResult]) 
     return {"date": origin["date"], "commit": origin["commit"], "tier": tier, "errors": errors}
 
 
+def _with_published(laboratory: Laboratory) -> Store:
+    """What the laboratory holds, and what was published and it lacks, but for runs of other numerics versions."""
+    whole = Store(":memory:")
+    whole.enter_rows(laboratory.store.tables())
+    held = {run.key for run in whole.runs()}
+    if STORE.exists():
+        import_into(whole, STORE)
+    now = subject()
+    whole.remove([run.key for run in whole.runs(now.name) if run.key not in held and run.numerics != now.numerics_version])
+    return whole
+
+
 def _publish(laboratory: Laboratory, page: Path, figures: list[Path], entry: dict) -> None:
     """Copies page, summary and its pictures to reports/published, with the store as text, and adds an entry to the history there."""
     PUBLISHED.mkdir(parents=True, exist_ok=True)
     for file in (page / "index.html", page / "summary.md", *figures):
         shutil.copy(file, PUBLISHED / file.name)
-    export(laboratory.store, STORE)
+    export(_with_published(laboratory), STORE)
     history = [*read_history(PUBLISHED / "history.json"), entry]
     (PUBLISHED / "history.json").write_text(json.dumps(history, indent=1) + "\n")
 
@@ -165,9 +185,12 @@ def draw_report(laboratory: Laboratory, tier: str, page: Path, publish: bool) ->
 
 
 def _tell(content: dict, page: Path) -> int:
-    """Returns 0 where all holds but for misses that are explained."""
+    """Returns 0 where the tier is whole and all holds but for misses that are explained."""
     results = content["results"]
-    passes = all(result.passes for result in results) and not any(row["defect"] for row in content["ledger"])
+    gone = [case.name for case in cases_of(content["tier"]) if case.name in content["absent"]]
+    if gone:
+        print(f"report: no result of {', '.join(gone)}, of the {content['tier']} tier: a reference code failed, or it was not run")
+    passes = not gone and all(result.passes for result in results) and not any(row["defect"] for row in content["ledger"])
     for result in results:
         print("\n".join(f"{result.case.name}: {line}" for line in result.lines))
     verdicts = [outcome.verdict for result in results for outcome in result.outcomes]

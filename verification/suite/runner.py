@@ -131,10 +131,16 @@ def measured(case: Case, run: Run, code: Code, with_charts: bool) -> Found:
             values[name] = _value(name, case, run)
         except (KeyError, IndexError, FileNotFoundError) as error:
             raise CaseError(f"{case.name}: {name} by {code.name}: {error} in {run.folder}") from error
-    charts = {}
-    if with_charts and measures.charts is not None:
-        charts[OWN] = [kept_chart(chart) for chart in measures.charts(run)]
+    charts = {OWN: _charts(measures, run)} if with_charts and measures.charts is not None else {}
     return Found(values, charts)
+
+
+def _charts(measures: Measures, run: Run) -> list[dict]:
+    """None where the code did not leave what they draw: a code that states its drag has no history of it."""
+    try:
+        return [kept_chart(chart) for chart in measures.charts(run)]
+    except (KeyError, IndexError, FileNotFoundError):
+        return []
 
 
 def look_up(laboratory: Shelf, job: Job) -> Entry | None:
