@@ -290,6 +290,8 @@ def _stopped(number: int, frame: object) -> None:
 
 def main() -> int:
     signal.signal(signal.SIGTERM, _stopped)
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as under nohup; else a terminal that closes would leave its runs behind
+        signal.signal(signal.SIGHUP, _stopped)
     try:
         return _called(_parser().parse_args())
     except KeyboardInterrupt:

@@ -236,6 +236,16 @@ def test_what_a_store_has_stays_where_an_export_says_otherwise(full: Store, tmp_
     assert other.run("a").label == "mine" and other.run("b").label == "label of b"
 
 
+def test_a_run_with_another_digest_is_not_imported(full: Store, tmp_path: Path) -> None:
+    export(full, tmp_path / "store.jsonl")
+    other = Store(":memory:")
+    other.enter(a_run("a", "beef"))
+    before = list(other.tables())
+    with pytest.raises(StoreError, match="the digest is another one here.*Nothing was entered"):
+        import_into(other, tmp_path / "store.jsonl")
+    assert list(other.tables()) == before
+
+
 def with_last(text: str, line: str) -> str:
     """With another last line."""
     return "\n".join([*text.splitlines()[:-1], line]) + "\n"

@@ -331,11 +331,20 @@ class Store:
                     if row["made"] <= made[row["bench"]]:
                         continue
                     change.execute("DELETE FROM figures WHERE bench = ? AND made < ?", (row["bench"], row["made"]))
+                if table == "runs":
+                    self._check_digest(change, row)
                 names = ", ".join(row)
                 cursor = change.execute(f"INSERT OR IGNORE INTO {table} ({names}) VALUES ({','.join('?' * len(row))})",
                                         tuple(row.values()))
                 entered += cursor.rowcount
         return entered
+
+    def _check_digest(self, change: sqlite3.Connection, row: dict) -> None:
+        """Throws StoreError where the same run has another digest here: what was measured of the one is not of the other."""
+        here = change.execute("SELECT record FROM runs WHERE key = ?", (row.get("key"),)).fetchone()
+        if here is not None and json.loads(here[0]).get("digest") != json.loads(row["record"]).get("digest"):
+            raise StoreError(f"{self.file}: {row['label']}: the digest is another one here: results changed without a new numerics "
+                             f"version of {row['code']}; raise that version, or import into another store. Nothing was entered")
 
     def remove(self, keys: Iterable[str]) -> int:
         """Runs and all that was measured of them. Returns how many runs went."""

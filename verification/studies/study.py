@@ -90,8 +90,8 @@ def read_study(file: Path) -> Study:
     name = f"{family}.{file.stem.removeprefix('study_')}"
     study = Study(name, points[0], " ".join(str(table.get("purpose", "")).split()), design, tuple(codes),
                   _factors(file, table.get("factors")))
-    if not study.case.observables:
-        _refuse(file, "factors", table["factors"], f"{family} measures nothing; give it an observable")
+    if all(observable.live for observable in study.case.observables):
+        _refuse(file, "factors", table["factors"], f"{family} measures nothing that stands without another code; give it an observable")
     for setting in study.settings:
         scene_of(study.case, study.case.base + setting)
     return study
@@ -110,9 +110,11 @@ def find_study(name: str) -> Study:
 
 
 def _job(study: Study, setting: Setting, code: Code) -> Job:
-    """Of the first observable that is held against no other code, if there is one."""
-    case = study.case
-    observable = next((one for one in case.observables if not one.live), case.observables[0])
+    """Of the first observable that is held against no other code. Throws Beyond where the code cannot tell it."""
+    case = able(study.case, code)
+    observable = next(one for one in case.observables if not one.live)
+    if observable.skipped:
+        raise Beyond(observable.skipped)
     alone = replace(case, observables=(replace(observable, order=None, extrapolated=None),), levels=(), vary=(), beside=())
     return Job(alone, case.base + setting, code)
 
@@ -124,7 +126,6 @@ def jobs_of(study: Study, say: Callable[[str], None] = print) -> list[Job]:
         try:
             if code.missing:
                 raise Beyond(code.missing)
-            able(study.case, code)
             jobs += [_job(study, setting, code) for setting in study.settings]
         except Beyond as error:
             say(f"{study.name}: {code.name} SKIPPED: {error}")
@@ -147,7 +148,7 @@ def results_of(shelf: Shelf, study: Study) -> list[Result]:
     for job in jobs_of(study, lambda text: None):
         entry = look_up(shelf, job)
         if entry is not None:
-            (observable,) = resolved(job.case, None).observables
+            (observable,) = resolved(replace(job.case, scene=entry.scene), None).observables
             outcome = Outcome(observable, entry.found.values[observable.name])
             found.append(Result(job.overrides[len(study.case.base) :], job.code, entry, outcome))
     return found

@@ -259,5 +259,6 @@ def run_with(laboratory: Laboratory, case: Case, overrides: tuple[str, ...], cod
     """The scene alone with overrides of the user: no levels, nothing varied, so the goals alone decide."""
     overrides = case.base + overrides
     observables = tuple(replace(observable, order=None, extrapolated=None) for observable in case.observables)
-    alone = replace(case, observables=observables, levels=(Level(overrides, "quick"),), vary=(), beside=(), equivalence=None, stalls="")
+    alone = replace(case, scene=scene_of(case, overrides), observables=observables, levels=(Level(overrides, "quick"),), vary=(),
+                    beside=(), equivalence=None, stalls="")
     return run_case(laboratory, alone, "quick", code, way, lambda text: None)

@@ -55,6 +55,8 @@ def _job(case: Case, code: Code) -> Job:
     level = case.levels_of("quick")[0]
     asked = able(case, code)
     observables = tuple(replace(one, order=None, extrapolated=None) for one in asked.observables if not one.live)[:1]
+    if observables[0].skipped:
+        raise Beyond(observables[0].skipped)
     return Job(replace(asked, observables=observables, live=None, vary=(), beside=()), level.overrides, code)
 
 
@@ -96,8 +98,6 @@ def _cell(shelf: Shelf, case: Case, code: Code) -> Cell:
     if entry is None:
         return Cell(code.title, why=shelf.store.refusal(job.request.key) or "not run yet")
     (observable,) = resolved(job.case, None).observables
-    if observable.skipped:
-        return Cell(code.title, why=observable.skipped)
     cost = entry.stored.cost
     return Cell(code.title, Outcome(observable, entry.found.values[observable.name]), cost.core_seconds, cost.setup_core_seconds)
 
