@@ -22,7 +22,7 @@ from verification.protocol.sources import checksum_of_sources, sources_of
 FOLDER = Path(__file__).resolve().parent
 SPEAKS = re.compile(r'^if __name__ == "__main__":$', re.MULTILINE)
 OWN = ("reference", "verification.codes")  # packages that the results of an adapter may depend on
-PATIENCE = 60.0  # seconds that describe may take, and that a run may take to end when told to
+PATIENCE = 60.0  # seconds that describe may take; a run has a tenth of it to end when told to
 
 
 @dataclass(frozen=True)
