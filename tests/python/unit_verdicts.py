@@ -244,8 +244,10 @@ def test_the_trend_names_what_moved_by_more_than_its_uncertainty() -> None:
 
 
 def test_a_miss_that_is_explained_stays_wrong_and_says_why() -> None:
-    known = Observable("drag", "F", 1.0, 0.0, "made up", goal=0.01, explained="the lattice resists")
+    known = Observable("drag", "F", 1.0, 0.0, "made up", goal=0.01, explained="the lattice resists",
+                       explained_goal=0.15)
     missed, met = Outcome(known, Measured(1.1, 0.0)), Outcome(known, Measured(1.001, 0.0))
+    assert not Outcome(known, Measured(1.2, 0.0)).passes and not Outcome(known, Measured(float("nan"), 0.0)).passes
     assert missed.verdict == WRONG and not missed.holds and missed.passes
     assert "beyond the goal 1 %; explained: the lattice resists" in missed.line
     assert met.verdict == CORRECT and met.holds and not met.explained and "explained" not in met.line

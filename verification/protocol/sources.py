@@ -9,6 +9,7 @@ from pathlib import Path
 
 from verification.protocol.machine import ROOT
 
+DATA = (".py", ".csv", ".json")
 _PARSING = threading.Lock()  # threads that parse at a time fail in Python 3.11
 
 
@@ -30,14 +31,23 @@ def _imports(file: Path, packages: tuple[str, ...]) -> set[Path]:
     return {path for place in places for path in (place.with_suffix(".py"), place / "__init__.py") if path.is_file()}
 
 
+def _beside(file: Path) -> set[Path]:
+    """Of a module in a folder of reference/: what else lies there, such as tables and programs that are not imported."""
+    if not file.is_relative_to(ROOT / "reference") or file.parent == ROOT / "reference":
+        return set()
+    folder = ROOT / "reference" / file.relative_to(ROOT / "reference").parts[0]
+    return {path for path in folder.rglob("*") if path.suffix in DATA}
+
+
 @functools.cache
 def sources_of(files: tuple[Path, ...], packages: tuple[str, ...]) -> tuple[Path, ...]:
-    """The files, and all that they import from these packages, directly or not."""
+    """The files, all that they import from these packages, directly or not, and the data that come with references."""
     seen, waiting = set(files), [file for file in files if file.suffix == ".py"]
     while waiting:
-        fresh = _imports(waiting.pop(), packages) - seen
+        file = waiting.pop()
+        fresh = (_imports(file, packages) | _beside(file)) - seen
         seen |= fresh
-        waiting += fresh
+        waiting += [path for path in fresh if path.suffix == ".py"]
     return tuple(sorted(seen))
 
 

@@ -67,5 +67,6 @@ def prune(laboratory: Laboratory, folders: bool) -> int:
             if run.code not in versions:
                 versions[run.code] = _numerics_of(run.code)
             stale += [run.key] if versions[run.code] not in (None, run.numerics) else []
-    print(f"{laboratory.store.remove(stale)} stale runs removed")
+    print(f"{laboratory.store.remove(stale)} stale runs removed, and what codes refused or failed at is forgotten")
+    laboratory.store.forget_refusals()
     return 0

@@ -118,13 +118,12 @@ class Store:
 
     def __init__(self, file: Path | str):
         self.file, self._alone = file, threading.RLock()
-        new = file == ":memory:" or not Path(file).exists() or Path(file).stat().st_size == 0
         if file != ":memory:":
             Path(file).parent.mkdir(parents=True, exist_ok=True)
         with self._told():
             self._connection = sqlite3.connect(file, timeout=WAIT, isolation_level=None, check_same_thread=False)
             self._connection.execute("PRAGMA busy_timeout = 120000")
-            if new:
+            if not self._connection.execute("SELECT name FROM sqlite_master").fetchall():
                 self._create()
             self._check()
 
@@ -289,6 +288,10 @@ class Store:
         """Why the code did not take this scene; empty where it did, or was not asked."""
         rows = self._rows("SELECT reason FROM refusals WHERE key = ?", key)
         return rows[0][0] if rows else ""
+
+    def forget_refusals(self) -> None:
+        with self._change() as change:
+            change.execute("DELETE FROM refusals")
 
     # Benchmarks.
 

@@ -139,7 +139,10 @@ def run_study(laboratory: Laboratory, study: Study, workers: int, say: Callable[
     def told(job: Job, share: float) -> None:
         say(f"{study.name}: {job.code.name}, {job.label}: done; {(time.monotonic() - started) * (1 - share) / share:.0f} s to go")
 
-    perform(laboratory, jobs, workers, told, cheapest_first=True)
+    def skipped(job: Job, why: Beyond) -> None:
+        say(f"{study.name}: {job.code.name}, {job.label}: SKIPPED: {why}")
+
+    perform(laboratory, jobs, workers, told, cheapest_first=True, skipped=skipped)
 
 
 def results_of(shelf: Shelf, study: Study) -> list[Result]:

@@ -23,6 +23,7 @@ class Observable:
     order: tuple[float, float] | None = None
     extrapolated: float | None = None  # goal of the value extrapolated over the levels
     explained: str = ""  # why it misses its goal, found out and written down: WRONG all the same, and no reason to stop
+    explained_goal: float = 0.0  # largest error, as `goal`, that the explanation covers
     live: str = ""  # quantity of the reference code that is run for this case
     published: str = ""  # table of reference/published
     needs: tuple[str, ...] = ()  # capabilities beside those that the scene asks for

@@ -113,9 +113,9 @@ class Outcome:
 
     @property
     def explained(self) -> str:
-        """Why it is WRONG, where the manifest knows. What is not a number has no such excuse."""
-        known = self.verdict == WRONG and not math.isnan(self.error) and self.convergence_verdict != NOT_CONVERGING
-        return self.observable.explained if known else ""
+        """Why it is WRONG, where the manifest knows, and by no more than that explains."""
+        known = self.verdict == WRONG and abs(self.error) <= self.observable.explained_goal
+        return self.observable.explained if known and self.convergence_verdict != NOT_CONVERGING else ""
 
     @property
     def passes(self) -> bool:

@@ -39,6 +39,7 @@
     live = "drag"                   # a quantity of the result of [case.live]
     published = "square_array_stokes"  # a table of reference/published, looked up for the scene
     explained = "why it misses its goal"  # of a miss whose cause is known: it stays WRONG, is shown with the cause, and fails no test
+    explained_goal = 0.05           # largest error, as goal, that this explains; comes with it
     needs = ["force-on-body"]       # capabilities of a code beside those that the scene asks for; may be left out
     input = 0.0                     # standard uncertainty from the inputs, absolute; 0 if left out
     source = "Sangani and Acrivos 1982, table 1"
@@ -144,7 +145,7 @@ def _needs(table: dict, where: str) -> tuple[str, ...]:
 
 def _observable(table: dict, where: str) -> Observable:
     kinds = {"name": str, "symbol": str, "goal": NUMBER}
-    _only(table, (*kinds, *REFERENCES, "uncertainty", "source", "input", "order", "extrapolated", "needs", "explained"), where)
+    _only(table, (*kinds, *REFERENCES, "uncertainty", "source", "input", "order", "extrapolated", "needs", "explained", "explained_goal"), where)
     band = table.get("order")
     if band is not None and not (isinstance(band, list) and len(band) == 2 and band[0] < band[1]):
         raise CaseError(f"{where}.order = {band!r}: write the band as [lowest, highest]")
@@ -153,6 +154,7 @@ def _observable(table: dict, where: str) -> Observable:
         **_reference(table, where),
         needs=_needs(table, where),
         explained=" ".join(_entry(table, "explained", str, where, "").split()),
+        explained_goal=_entry(table, "explained_goal", NUMBER, where, 0.0 if "explained" not in table else None),
         input=_entry(table, "input", NUMBER, where, 0.0),
         order=tuple(band) if band else None,
         extrapolated=_entry(table, "extrapolated", NUMBER, where) if "extrapolated" in table else None,

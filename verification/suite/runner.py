@@ -14,7 +14,7 @@ from verification.measures.curve import kept_chart
 from verification.measures.measures import Measure, Measures, measures_in
 from verification.measures.observables import OBSERVABLES
 from verification.measures.source import measure_id
-from verification.protocol.errors import CaseError
+from verification.protocol.errors import Beyond, CaseError, SolverError
 from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
 from verification.store.laboratory import Laboratory, Request
@@ -181,19 +181,28 @@ Told = Callable[[Job, float], None]
 
 
 def perform(laboratory: Laboratory, jobs: list[Job], workers: int, told: Told = lambda job, share: None, anew: bool = False,
-            cheapest_first: bool = False) -> None:
+            cheapest_first: bool = False, skipped: Callable[[Job, Beyond], None] | None = None) -> None:
     """Makes all that is missing, the longest first, or the cheapest, `workers` at a time.
 
-    `told` is called after each with the share of the expected work that is behind. The first error ends it.
+    `told` is called after each with the share of the expected work that is behind. A run that fails does not stop the others: its
+    error is thrown when all have ended. `skipped` is told of what is beyond a code, which then is no error.
     """
     waiting = jobs if anew else [job for job in jobs if look_up(laboratory, job) is None]
     weights = {id(job): job.weight for job in waiting}
     total = sum(weights.values()) or 1.0
-    behind, lock = 0.0, threading.Lock()
+    behind, lock, failures = 0.0, threading.Lock(), []
 
     def one(job: Job) -> None:
         nonlocal behind
-        obtain(laboratory, job, anew)
+        try:
+            obtain(laboratory, job, anew)
+        except Beyond as error:
+            if skipped is None:
+                failures.append(error)
+            else:
+                skipped(job, error)
+        except (SolverError, CaseError) as error:
+            failures.append(error)
         with lock:
             behind += weights[id(job)]
             told(job, behind / total)
@@ -202,3 +211,5 @@ def perform(laboratory: Laboratory, jobs: list[Job], workers: int, told: Told = 
     with workers_of(workers) as pool:
         for future in [pool.submit(one, job) for job in ordered]:
             future.result()
+    if failures:
+        raise failures[0]

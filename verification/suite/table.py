@@ -4,7 +4,10 @@ import re
 from dataclasses import dataclass, replace
 
 from verification.codes.code import Code, all_codes, find_code
+from verification.measures.source import measure_id
 from verification.protocol.errors import Beyond, CaseError, SolverError
+from verification.protocol.machine import commit
+from verification.store.key import hash_of
 from verification.store.laboratory import Laboratory
 from verification.suite.ability import able
 from verification.suite.case import Case
@@ -60,6 +63,16 @@ def _job(case: Case, code: Code) -> Job:
     return Job(replace(asked, observables=observables, live=None, vary=(), beside=()), level.overrides, code)
 
 
+def _failure_key(job: Job) -> str:
+    """Of a failure that may be gone with other sources or another measure."""
+    return hash_of({"run": job.request.key, "sources": commit(), "measure": measure_id(job.case.file.parent)})[:24]
+
+
+def _why_not(shelf: Shelf, job: Job) -> str:
+    """The words with which the code refused or failed; empty where it did not."""
+    return shelf.store.refusal(job.request.key) or shelf.store.refusal(_failure_key(job))
+
+
 def missing_of_table(shelf: Shelf) -> list[Job]:
     """Runs that installed codes have not made or refused yet."""
     jobs = []
@@ -69,20 +82,20 @@ def missing_of_table(shelf: Shelf) -> list[Job]:
                 job = _job(case, code)
             except Beyond:
                 continue
-            if not code.missing and look_up(shelf, job) is None and not shelf.store.refusal(job.request.key):
+            if not code.missing and look_up(shelf, job) is None and not _why_not(shelf, job):
                 jobs.append(job)
     return jobs
 
 
 def make(laboratory: Laboratory, job: Job) -> str:
-    """Returns why there is no result; empty where there is one. A scene that the code cannot do, or on which it always fails, is
-    remembered; one that was killed is tried again."""
+    """Returns why there is no result; empty where there is one. A scene that the code cannot do is remembered for good, and a failure
+    as long as the sources are the same; one that was killed is tried again."""
     try:
         obtain(laboratory, job)
     except (Beyond, SolverError, CaseError) as error:
-        words = str(error).strip().splitlines()[-1]
+        words, key = str(error).strip().splitlines()[-1], job.request.key if isinstance(error, Beyond) else _failure_key(job)
         if not KILLED.search(str(error)):
-            laboratory.store.enter_refusal(job.request.key, job.request.label, job.code.name, words)
+            laboratory.store.enter_refusal(key, job.request.label, job.code.name, words)
         return words
     return ""
 
@@ -96,7 +109,7 @@ def _cell(shelf: Shelf, case: Case, code: Code) -> Cell:
         return Cell(code.title, why=str(error))
     entry = look_up(shelf, job)
     if entry is None:
-        return Cell(code.title, why=shelf.store.refusal(job.request.key) or "not run yet")
+        return Cell(code.title, why=_why_not(shelf, job) or "not run yet")
     (observable,) = resolved(job.case, None).observables
     cost = entry.stored.cost
     return Cell(code.title, Outcome(observable, entry.found.values[observable.name]), cost.core_seconds, cost.setup_core_seconds)
