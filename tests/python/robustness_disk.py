@@ -146,7 +146,7 @@ def test_a_lost_rank_ends_the_run_and_says_so(tmp_path: Path, through: Run, rank
     processes.kill(processes.ranks(process.pid)[-1:])
     _, stderr = processes.wait_until_gone(process, every)
     assert process.returncode != 0
-    assert stderr.count("exited on signal 9") == 1, stderr
+    assert " ".join(stderr.split()).count("exited on signal 9") == 1, stderr  # Open MPI 5 breaks its lines
     table = (tmp_path / "series.csv").read_text()
     assert len({line.count(",") for line in table.splitlines()}) == 1
     checkpoint = min(tmp_path.glob("checkpoints/*.h5"))
