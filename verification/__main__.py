@@ -45,7 +45,8 @@ def _run_alone(laboratory, case, code, arguments: argparse.Namespace) -> None:
 
     scene = scene_of(case, case.base + tuple(arguments.set))
     stored = laboratory.obtain(Request(code, scene, case.name, cores=arguments.ranks), arguments.anew, folder_too=True)
-    print(f"{case.name}: ran to its end; its manifest names no observable. Series in {laboratory.run_folder(stored.key)}/series.csv")
+    where = "" if arguments.scratch else f". Series in {laboratory.run_folder(stored.key)}/series.csv"
+    print(f"{case.name}: ran to its end; its manifest names no observable{where}")
 
 
 def run_named(arguments: argparse.Namespace) -> int:
@@ -57,7 +58,10 @@ def run_named(arguments: argparse.Namespace) -> int:
 
 
 def _run_in(folder: Path, arguments: argparse.Namespace) -> int:
-    """The case, or all its points of the tier. Returns 0, 1 where something does not hold and is not explained, else 77 where something was skipped."""
+    """The case, or all its points of the tier.
+
+    Returns 0, 1 where something does not hold and is not explained, else 77 where something was skipped.
+    """
     from verification.codes.code import find_code
     from verification.store.laboratory import Laboratory
     from verification.suite.ability import able
@@ -170,7 +174,8 @@ def study(arguments: argparse.Namespace) -> int:
 
     if arguments.name is None:
         for found in map(read_study, all_studies()):
-            print(f"{found.name:28} {len(found.settings) * len(found.codes):4} runs  {textwrap.shorten(found.purpose, 90, placeholder=' ...')}")
+            runs, purpose = len(found.settings) * len(found.codes), textwrap.shorten(found.purpose, 90, placeholder=" ...")
+            print(f"{found.name:28} {runs:4} runs  {purpose}")
         return 0
     from verification.store.laboratory import Laboratory
 
@@ -189,13 +194,16 @@ def _ranks(text: str) -> list[int]:
 
 
 def _add_lab(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--lab", type=Path, default=LABORATORY, metavar="DIR", help="folder of the store and of the runs (default runs)")
+    parser.add_argument("--lab", type=Path, default=LABORATORY, metavar="DIR",
+                        help="folder of the store and of the runs (default runs)")
 
 
 def _add_run(commands) -> None:
     one = commands.add_parser("run", help="run a case and print a line an observable")
-    one.add_argument("case", nargs="+", help="name of a folder of cases/, CASE.POINT for one of its points, or the path of a scene")
-    one.add_argument("--code", default="mappm", metavar="NAME", help="the code that is judged (default mappm): a name that `codes` lists, or "
+    one.add_argument("case", nargs="+",
+                     help="name of a folder of cases/, CASE.POINT for one of its points, or the path of a scene")
+    one.add_argument("--code", default="mappm", metavar="NAME",
+                     help="the code that is judged (default mappm): a name that `codes` lists, or "
                      "the path of an adapter")
     one.add_argument("--set", metavar="KEY=VALUE", action="append", default=[],
                      help="set a parameter of the case or a key of the scene: then it runs alone, without levels, and the goals "
@@ -217,7 +225,8 @@ def _add_store(commands) -> None:
     what.add_parser("export", help="write it as text, JSON lines").add_argument("file", type=Path)
     what.add_parser("import", help="enter what an export holds and the store does not").add_argument("file", type=Path)
     pruned = what.add_parser("prune", help="remove runs of other numerics versions than that of the programs")
-    pruned.add_argument("--folders", action="store_true", help="remove the folders of all runs, and keep what the store holds of them")
+    pruned.add_argument("--folders", action="store_true",
+                        help="remove the folders of all runs, and keep what the store holds of them")
     for parser in what.choices.values():
         _add_lab(parser)
 
@@ -236,12 +245,15 @@ def _parser() -> argparse.ArgumentParser:
 
     report = commands.add_parser("report", help="run what is missing of the tier, then draw what the store holds")
     report.add_argument("--tier", choices=TIERS, default="quick")
-    report.add_argument("--out", type=Path, default=ROOT / "reports" / "out", metavar="DIR", help="folder of the page (default reports/out)")
-    report.add_argument("--publish", action="store_true", help="also copy page, summary and the store as text to reports/published")
+    report.add_argument("--out", type=Path, default=ROOT / "reports" / "out", metavar="DIR",
+                        help="folder of the page (default reports/out)")
+    report.add_argument("--publish", action="store_true",
+                        help="also copy page, summary and the store as text to reports/published")
     report.add_argument("--only-draw", action="store_true", help="run nothing")
     _add_lab(report)
 
-    many = commands.add_parser("study", help="run what is missing of a study and print its table; without a name, list the studies")
+    many = commands.add_parser("study",
+                               help="run what is missing of a study and print its table; without a name, list the studies")
     many.add_argument("name", nargs="?", help="CASE.NAME")
     many.add_argument("--jobs", type=int, default=cores(), metavar="K", help="runs at a time (default: a core each)")
     many.add_argument("--only-show", action="store_true", help="run nothing")
@@ -290,7 +302,8 @@ def _stopped(number: int, frame: object) -> None:
 
 def main() -> int:
     signal.signal(signal.SIGTERM, _stopped)
-    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as under nohup; else a terminal that closes would leave its runs behind
+    # Ignored under nohup; else a terminal that closes would leave its runs behind.
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
         signal.signal(signal.SIGHUP, _stopped)
     try:
         return _called(_parser().parse_args())

@@ -33,18 +33,18 @@ STORED = {"mutation": "mutation.json", "robustness": "robustness.json"}  # made 
 
 
 @dataclass(frozen=True)
-class Shelf:
+class Published:
     """What was published, as a store that nothing is entered into."""
 
     store: Store
 
 
-def published() -> Shelf:
+def published() -> Published:
     store = Store(":memory:")
     for file in (STORE, PUBLISHED / "bench.jsonl"):
         if file.exists():
             import_into(store, file)
-    return Shelf(store)
+    return Published(store)
 
 
 def _agrees(laboratory: Laboratory, published: CaseResult) -> bool:
@@ -53,7 +53,7 @@ def _agrees(laboratory: Laboratory, published: CaseResult) -> bool:
     return all(here is None or here.record.get("digest") == there.record.get("digest") for there, here in pairs)
 
 
-def _result(laboratory: Laboratory, shelf: Shelf, case) -> CaseResult | None:
+def _result(laboratory: Laboratory, shelf: Published, case) -> CaseResult | None:
     """At the finest tier that is whole: of this laboratory, or, of the full tier alone, as published. What was published counts
     only where nothing here speaks against it: a quick tier that fails, or another digest of one of its runs."""
     code = subject()
@@ -66,7 +66,7 @@ def _result(laboratory: Laboratory, shelf: Shelf, case) -> CaseResult | None:
     return published if published is not None and _agrees(laboratory, published) else quick
 
 
-def results_of(laboratory: Laboratory, shelf: Shelf) -> tuple[list[CaseResult], list[str]]:
+def results_of(laboratory: Laboratory, shelf: Published) -> tuple[list[CaseResult], list[str]]:
     """(what there is, failures first; names of the cases that were not run)."""
     found, absent = [], []
     for case in cases_of("full"):
@@ -139,7 +139,7 @@ def _publish(laboratory: Laboratory, page: Path, figures: list[Path], entry: dic
     (PUBLISHED / "history.json").write_text(json.dumps(history, indent=1) + "\n")
 
 
-def _benches(laboratory: Laboratory, shelf: Shelf) -> dict[str, Figures]:
+def _benches(laboratory: Laboratory, shelf: Published) -> dict[str, Figures]:
     """Of each benchmark that has a chart: its figures in this laboratory, or as published."""
     found = benches_of(shelf.store) | benches_of(laboratory.store)
     return {name: found[name] for name in CHARTS if name in found}
