@@ -16,7 +16,7 @@ from verification.bits.conservation import Conservation
 from verification.bits.equivalence import Matrix, Row
 from verification.codes.code import find_code
 from verification.protocol.machine import ROOT
-from verification.report.report import Shelf, _result
+from verification.report.report import Published, _result
 from verification.store.export import export, import_into
 from verification.store.laboratory import Laboratory
 from verification.store.store import Store
@@ -205,7 +205,7 @@ def test_the_report_takes_the_full_tier_here_or_as_published_before_the_quick_on
                                                                                   monkeypatch: pytest.MonkeyPatch) -> None:
     code = tiny(tmp_path / "code", ("fluid", "exact-ledger", "digest"), 2).code
     monkeypatch.setattr("verification.report.report.subject", lambda: code)
-    here, elsewhere, shelf = Laboratory(tmp_path / "here"), Laboratory(tmp_path / "elsewhere"), Shelf(Store(":memory:"))
+    here, elsewhere, shelf = Laboratory(tmp_path / "here"), Laboratory(tmp_path / "elsewhere"), Published(Store(":memory:"))
     assert _result(here, shelf, drift) is None
     run_case(here, drift, "quick", code, Way(), print)
     assert _result(here, shelf, drift).tier == "quick"
