@@ -155,17 +155,19 @@ def use_store(arguments: argparse.Namespace) -> int:
 
 
 def report(arguments: argparse.Namespace) -> int:
-    """Runs what is missing, then draws."""
+    """Runs what is missing, then draws what there is. 1 where a run failed, or something does not hold."""
     from verification.store.laboratory import Laboratory
     from verification.suite.tier import make_tier
 
     laboratory = Laboratory(arguments.lab)
-    if not arguments.only_draw:
-        make_tier(laboratory, arguments.tier)
+    failures = [] if arguments.only_draw else make_tier(laboratory, arguments.tier)
     print("report: drawing", flush=True)
     from verification.report.report import draw_report  # drawing libraries load slowly
 
-    return draw_report(laboratory, arguments.tier, arguments.out, arguments.publish)
+    status = draw_report(laboratory, arguments.tier, arguments.out, arguments.publish)
+    for words in failures:
+        _say(f"verification: failed: {words}")
+    return 1 if failures else status
 
 
 def study(arguments: argparse.Namespace) -> int:

@@ -1,9 +1,11 @@
 """Runs what is missing of a tier."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 from verification.codes.code import Code, find_code
+from verification.protocol.errors import Beyond, CaseError, SolverError
 from verification.protocol.machine import cores
 from verification.store.laboratory import Laboratory, Request
 from verification.suite.case import Case
@@ -11,7 +13,7 @@ from verification.suite.manifest import all_cases, find_case
 from verification.suite.parameters import scene_of
 from verification.suite.progress import Progress
 from verification.suite.result import finish, obtain_bits
-from verification.suite.runner import Job, jobs_of, perform, workers_of
+from verification.suite.runner import Job, jobs_of, look_up, perform, workers_of
 from verification.suite.table import make, missing_of_table
 
 SHOWN = "gas_solid_small"  # the scene of the long run that the report shows
@@ -63,21 +65,40 @@ def _table(laboratory: Laboratory, say: Say) -> None:
             say(f"{done} of {len(jobs)}, last {job.code.name} on {job.case.name}")
 
 
-def make_tier(laboratory: Laboratory, tier: str) -> None:
-    """Throws SolverError, CaseError and StoreError. What was made before stays."""
+class Tried:
+    """Stages of a tier: one that fails is kept for the end, and those that follow do what they can."""
+
+    def __init__(self, progress: Progress) -> None:
+        self.progress, self.failures = progress, []
+
+    @contextmanager
+    def stage(self, title: str) -> Iterator[Say]:
+        with self.progress.stage(title) as say:
+            try:
+                yield say
+            except (SolverError, CaseError, Beyond) as error:
+                self.failures.append(f"{title}: {error}")
+
+
+def make_tier(laboratory: Laboratory, tier: str) -> list[str]:
+    """Returns what failed, in words; all else is made. Throws StoreError."""
     cases, code = cases_of(tier), subject()
     with_bits = [case for case in cases if case.equivalence is not None]
-    progress = Progress(stages=4 + len(with_bits))
-    jobs = [job for case in cases for job in jobs_of(case, tier, code)]
-    with progress.stage(f"{len(jobs)} runs of {len(cases)} cases") as say:
-        perform(laboratory, jobs, cores(), _with_time(say, lambda job: f"last {job.case.name}"))
-    with progress.stage("reference codes") as say:
-        _references(laboratory, [case for case in cases if case.live], tier, code, say)
+    tried = Tried(Progress(stages=4 + len(with_bits)))
+    jobs = {case.name: jobs_of(case, tier, code) for case in cases}
+    count = sum(map(len, jobs.values()))
+    with tried.stage(f"{count} runs of {len(cases)} cases") as say:
+        perform(laboratory, [job for some in jobs.values() for job in some], cores(),
+                _with_time(say, lambda job: f"last {job.case.name}"))
+    with tried.stage("reference codes") as say:
+        ready = [case for case in cases if case.live and all(look_up(laboratory, job) for job in jobs[case.name])]
+        _references(laboratory, ready, tier, code, say)
     for case in with_bits:
-        with progress.stage(f"bits of {case.name}") as say:
+        with tried.stage(f"bits of {case.name}") as say:
             obtain_bits(laboratory, case, code, say)
-    with progress.stage(f"{SHOWN}, {SHOWN_STEPS[tier]} steps on {SHOWN_RANKS} processes"):
+    with tried.stage(f"{SHOWN}, {SHOWN_STEPS[tier]} steps on {SHOWN_RANKS} processes"):
         shown = shown_request(tier)
         laboratory.obtain(shown, folder_too=not laboratory.store.has_files(shown.key))  # an import brings no series and no field
-    with progress.stage("other codes on the same cases") as say:
+    with tried.stage("other codes on the same cases") as say:
         _table(laboratory, say)
+    return tried.failures
