@@ -168,6 +168,7 @@ fluid = [1.0, 0.0]
 def test_what_openfoam_cannot_run_is_told(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     if lacking := OpenFoam().missing():
         pytest.skip(lacking)
-    (tmp_path / "scene.toml").write_text(VORTICES)
+    free = '[[body]]\nshape = "disc"\nradius = 0.1\ndensity = 2.0\nposition = [0.5, 0.5]\n'
+    (tmp_path / "scene.toml").write_text(VORTICES + free)
     assert main(OpenFoam(), ["run", "--scene", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out")]) == CANNOT
-    assert "--option problem=drag" in capsys.readouterr().err
+    assert "lacks free-body" in capsys.readouterr().err

@@ -33,7 +33,7 @@ def check_run(folder: Path, capabilities: frozenset[str] | set[str]) -> None:
     solids = folder / "solids.csv"
     if solids.exists():
         check_solids(solids)
-    elif FREE_BODY in capabilities and _wants_solids(scene):
+    elif FREE_BODY in capabilities and _wants_solids(scene) and not record.get("quantities"):  # which it may state instead
         _wrong(solids, "", "missing, though the scene has output.solids = true")
 
 
