@@ -1,6 +1,5 @@
 """Stored levels of OpenFOAM, computed again. Oracle: the stored value, to the accuracy of the iteration."""
 
-import shutil
 from pathlib import Path
 
 import pytest
@@ -8,8 +7,10 @@ import pytest
 from reference.openfoam import store
 from reference.openfoam.cell import cell_of
 from reference.openfoam.level import run_level
+from reference.openfoam.run import missing_of
 
-pytestmark = pytest.mark.skipif(shutil.which("simpleFoam") is None, reason="simpleFoam is not installed: apt-get install openfoam")
+LACKING = missing_of(("blockMesh", "simpleFoam"))
+pytestmark = pytest.mark.skipif(bool(LACKING), reason=LACKING)
 STEADY = sorted(file for file in store.FOLDER.glob("*.json") if not store.read_stored(file).transient)
 
 
