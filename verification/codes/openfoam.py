@@ -47,7 +47,8 @@ def drag(task: Task) -> Left:
     try:
         return left_of(drag_at(read_cell(task.file, []), float(task.scene["fluid"]["spacing"]), task.out), task.out)
     except InputError as error:
-        raise Cannot(str(error)) from None
+        shapes = ", ".join(body["shape"] for body in task.scene["body"])
+        raise Cannot(f"flow around bodies ({shapes}): {error}") from None
     except FailedRun as error:
         raise Failed(str(error)) from None
 
