@@ -18,6 +18,25 @@ AXES = "xyz"
 DECAYED = 40.0  # a mode that has lost exp(-40) is beyond the digits of a double
 
 
+def field_shape(kind: str, phase: np.ndarray, along: int, across: int) -> np.ndarray:
+    """(n, D) a field of FIELDS of amplitude 1 at phases k x (n, D); a wave has the direction `along` and its gradient `across`."""
+    shape, sine, cosine = np.zeros_like(phase), np.sin(phase), np.cos(phase)
+    if kind == "wave":
+        shape[:, along] = sine[:, across]
+    elif kind == "vortices":
+        deep = np.prod(cosine[:, 2:], axis=1)
+        shape[:, 0], shape[:, 1] = sine[:, 0] * cosine[:, 1] * deep, -cosine[:, 0] * sine[:, 1] * deep
+    else:
+        for axis in range(3):
+            shape[:, axis] = sine[:, (axis + 2) % 3] + cosine[:, (axis + 1) % 3]
+    return shape
+
+
+def wave_axes(declared: dict) -> tuple[int, int]:
+    """(direction, gradient) of the table of a field; (0, 1) of one that is no wave."""
+    return AXES.index(declared.get("direction", "x")), AXES.index(declared.get("gradient", "y"))
+
+
 def _vector(values: list | None) -> np.ndarray:
     """Three numbers; those that are not given are 0."""
     whole = np.zeros(3)
@@ -50,18 +69,9 @@ class Decaying(Exact):
     across: int = 1
     stream: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
-    def _shape(self, points: np.ndarray) -> np.ndarray:
-        x, y, z = (points * self.k).T
-        if self.kind == "wave":
-            found = np.zeros_like(points)
-            found[:, self.along] = np.sin(self.k[self.across] * points[:, self.across])
-            return found
-        if self.kind == "vortices":
-            return np.column_stack([np.sin(x) * np.cos(y), -np.cos(x) * np.sin(y), np.zeros(len(points))])
-        return np.column_stack([np.sin(z) + np.cos(y), np.sin(x) + np.cos(z), np.sin(y) + np.cos(x)])
-
     def velocity(self, points: np.ndarray, time: float) -> np.ndarray:
-        return self.stream + self.amplitude * math.exp(-self.rate * time) * self._shape(points - self.stream * time)
+        shape = field_shape(self.kind, (points - self.stream * time) * self.k, self.along, self.across)
+        return self.stream + self.amplitude * math.exp(-self.rate * time) * shape
 
 
 @dataclass(frozen=True)
@@ -134,7 +144,7 @@ def _decaying(scene: dict) -> Decaying:
         raise Cannot("of vortices in space only the start is exact")
     k = np.zeros(3)
     k[: len(size)] = 2 * math.pi * table.get("mode", 1) / np.array(size)
-    axes = [AXES.index(table[name]) for name in ("direction", "gradient")] if kind == "wave" else [0, 1]
+    axes = wave_axes(table)
     if axes[0] == axes[1]:
         raise Cannot("a wave along its own gradient is sound, which has no exact solution here")
     eigenvalue = {"wave": k[axes[1]] ** 2, "vortices": k @ k, "abc": k[0] ** 2}[kind]

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from reference.exact_flows import FIELDS, field_shape, wave_axes
 from verification.protocol.adapter import BadInput, Cannot
 from verification.protocol.points import write_points
 from verification.protocol.scene import in_si
@@ -20,7 +21,6 @@ FRAMES = 40  # that a run leaves, evenly, beside its start
 COURANT = 0.25  # of h over the sound speed and the fastest motion, h half the range of the pair law
 VISCOUS = 0.125  # of h^2 / nu
 FORCED = 0.25  # of sqrt(h / g)
-FIELDS = ("wave", "vortices", "abc")
 
 
 @dataclass(frozen=True)
@@ -151,22 +151,8 @@ def start_velocity(scene: ParticleScene, points: np.ndarray) -> np.ndarray:
         if kind in scene.table:
             declared = scene.table[kind]
             phase = 2 * np.pi * declared.get("mode", 1) * points / scene.size
-            velocity += _number(declared, "amplitude", f"fluid.{kind}") * _shape(kind, declared, phase)
+            velocity += _number(declared, "amplitude", f"fluid.{kind}") * field_shape(kind, phase, *wave_axes(declared))
     return velocity
-
-
-def _shape(kind: str, declared: dict, phase: np.ndarray) -> np.ndarray:
-    """(n, D) a field of amplitude 1 at phases (n, D)."""
-    shape, sine, cosine = np.zeros_like(phase), np.sin(phase), np.cos(phase)
-    if kind == "wave":
-        shape[:, "xyz".index(declared["direction"])] = sine[:, "xyz".index(declared["gradient"])]
-    elif kind == "vortices":
-        deep = np.prod(cosine[:, 2:], axis=1)
-        shape[:, 0], shape[:, 1] = sine[:, 0] * cosine[:, 1] * deep, -cosine[:, 0] * sine[:, 1] * deep
-    else:
-        for axis in range(3):
-            shape[:, axis] = sine[:, (axis + 2) % 3] + cosine[:, (axis + 1) % 3]
-    return shape
 
 
 def _displaced(scene: ParticleScene, points: np.ndarray, wall: np.ndarray) -> np.ndarray:

@@ -15,12 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
+from reference.exact_flows import FIELDS, wave_axes
 from reference.openfoam import read
 from reference.openfoam.flow_case import PROGRAM, FlowCase, write_flow_case
 from reference.openfoam.room import Room, room_of
 from reference.openfoam.run import FailedRun, run
 from reference.particles import (
-    FIELDS,
     Frame,
     Particles,
     ParticleScene,
@@ -48,8 +48,8 @@ def wave_number(scene: ParticleScene, room: Room) -> float:
     for kind in FIELDS:
         if kind in scene.table:
             k = 2 * math.pi * scene.table[kind].get("mode", 1) / scene.size
-            axis = "xyz".index(scene.table[kind]["gradient"]) if kind == "wave" else 0
-            found.append(float(np.linalg.norm(k)) if kind == "vortices" else float(k[axis]))
+            across = wave_axes(scene.table[kind])[1] if kind == "wave" else 0
+            found.append(float(np.linalg.norm(k)) if kind == "vortices" else float(k[across]))
     return max(found, default=0.0)
 
 
