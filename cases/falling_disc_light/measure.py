@@ -1,21 +1,9 @@
 """The measures of the heavy disc."""
 
-from cases.falling_disc.measure import (
-    FIGURES,
-    charts_of_both,
-    curves,
-    from_stokes_flow,
-    lag,
-    reference_options,
-    relaxation_time,
-    terminal_velocity,
-)
-from verification.measures.measures import Measures, by_name
+from dataclasses import replace
 
-MEASURES = Measures(
-    observables=by_name(terminal_velocity, relaxation_time, lag, from_stokes_flow),
-    figures=FIGURES,
-    charts=curves,
-    charts_of_both=charts_of_both,
-    reference_options=reference_options,
-)
+from cases.falling_disc.measure import MEASURES as HEAVY
+from cases.falling_disc.measure import from_stokes_flow, lag, relaxation_time, terminal_velocity
+from verification.measures.measures import by_name
+
+MEASURES = replace(HEAVY, observables=by_name(terminal_velocity, relaxation_time, lag, from_stokes_flow))

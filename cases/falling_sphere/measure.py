@@ -1,15 +1,15 @@
 """A sphere released in a periodic cell: its slip against its own drag law, LIGGGHTS, and Basset's history."""
 
+from dataclasses import replace
+
 import numpy as np
 
+from cases.falling_disc.measure import MEASURES as DISC
 from cases.falling_disc.measure import (
-    FIGURES,
     Law,
     Release,
     _times,
-    charts_of_both,
     measured_law,
-    reference_options,
     relaxation_time,
     release_of,
     slip,
@@ -18,7 +18,7 @@ from cases.falling_disc.measure import (
 from reference.stokes.history import History
 from reference.stokes.laplace import invert
 from verification.measures.curve import Chart, Curve
-from verification.measures.measures import Measures, by_name
+from verification.measures.measures import by_name
 from verification.protocol.quantity import Measured
 from verification.protocol.run import Run
 
@@ -60,10 +60,4 @@ def curves(run: Run) -> list[Chart]:
     ))]
 
 
-MEASURES = Measures(
-    observables=by_name(terminal_velocity, relaxation_time, from_drag_law),
-    figures=FIGURES,
-    charts=curves,
-    charts_of_both=charts_of_both,
-    reference_options=reference_options,
-)
+MEASURES = replace(DISC, observables=by_name(terminal_velocity, relaxation_time, from_drag_law), charts=curves)

@@ -1,19 +1,9 @@
 """The measures of the heavy sphere."""
 
-from cases.falling_sphere.measure import (
-    FIGURES,
-    charts_of_both,
-    curves,
-    from_history,
-    reference_options,
-    terminal_velocity,
-)
-from verification.measures.measures import Measures, by_name
+from dataclasses import replace
 
-MEASURES = Measures(
-    observables=by_name(terminal_velocity, from_history),
-    figures=FIGURES,
-    charts=curves,
-    charts_of_both=charts_of_both,
-    reference_options=reference_options,
-)
+from cases.falling_sphere.measure import MEASURES as HEAVY
+from cases.falling_sphere.measure import from_history, terminal_velocity
+from verification.measures.measures import by_name
+
+MEASURES = replace(HEAVY, observables=by_name(terminal_velocity, from_history))
