@@ -2,7 +2,6 @@
 
 import os
 import re
-import resource
 import shutil
 import subprocess
 from collections.abc import Iterator, Mapping
@@ -10,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
+from verification.protocol.adapter import core_seconds_of_children
 
 PEERS = Path(__file__).resolve().parents[1] / ".venv-peers"  # an environment of their own, by ./setup --peers
 HEADER = 9  # lines of a frame of a dump before its particles
@@ -40,17 +41,12 @@ def package_version(name: str) -> str:
     return done.stdout if done.returncode == 0 else ""
 
 
-def _children_seconds() -> float:
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
 def run_in(folder: Path, command: list[str], version: str, environment: Mapping[str, str] = {}) -> Finished:
     """Runs the command in `folder`; the first group of the pattern `version` in its output is the version. Throws Failed."""
-    before = _children_seconds()
+    before = core_seconds_of_children()
     done = subprocess.run(command, cwd=folder, text=True, env=os.environ | environment, stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    seconds = _children_seconds() - before
+    seconds = core_seconds_of_children() - before
     error = re.search(r"^ERROR.*", done.stdout, re.MULTILINE)
     if done.returncode != 0 or error:
         raise Failed(error.group(0) if error else f"exit status {done.returncode}: {done.stdout[-300:]}")

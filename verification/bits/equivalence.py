@@ -25,10 +25,11 @@ import re
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from verification.codes.mappm import INSTRUCTION_SETS, Options, best_instruction_set, program, run
-from verification.protocol.errors import CaseError, SolverError
+from verification.protocol.errors import SolverError, refuse
 from verification.protocol.machine import ROOT
 from verification.protocol.series import Table, first_difference
 
@@ -93,26 +94,20 @@ class Matrix:
         return [*(row.line for row in self.rows), self.verdict]
 
 
-def _refuse(where: str, key: str, value: object, fix: str):
-    raise CaseError(f"{where}.{key} = {value!r}: {fix}")
-
-
 def _variant(label: str, where: str, key: str) -> Variant:
     words, given = label.split(), {}
-
-    def refuse(fix: str):
-        _refuse(where, key, label, fix)
+    wrong = partial(refuse, where, key, label)
 
     def number(text: str) -> int:
         if not re.fullmatch(r"[1-9][0-9]{0,5}", text):
-            refuse(f"{text!r} is no positive number")
+            wrong(f"{text!r} is no positive number")
         return int(text)
 
     while words:
         word = words.pop(0)
         name = "P" if word.startswith("P=") else word
         if name in given:
-            refuse(f"{name} stands twice; remove one")
+            wrong(f"{name} stands twice; remove one")
         if name in ("serial", "all-pairs"):
             given[name] = ""
         elif name == "P":
@@ -120,32 +115,32 @@ def _variant(label: str, where: str, key: str) -> Variant:
         elif name in ("domains", "threads", "rebalance", "build", "isa", "restart") and words:
             given[name] = words.pop(0)
         else:
-            refuse(f"{word!r} is unknown or lacks its value; words are {WORDS}")
+            wrong(f"{word!r} is unknown or lacks its value; words are {WORDS}")
     if not given:
-        refuse(f"is empty; words are {WORDS}")
+        wrong(f"is empty; words are {WORDS}")
 
     if "restart" in given:
         ranks = re.fullmatch(r"(\d+)->(\d+)", given["restart"])
         if len(given) > 1 or not ranks:
-            refuse("restart stands alone, as in 'restart 2->3'")
+            wrong("restart stands alone, as in 'restart 2->3'")
         return Variant(label, Options(ranks=number(ranks[1])), resumed_on=number(ranks[2]))
     build = ROOT / "build" / given["build"] if "build" in given else None
     if "serial" in given:
         if not given.keys() <= {"serial", "all-pairs", "build"}:
-            refuse("the serial reference goes with all-pairs and build only")
+            wrong("the serial reference goes with all-pairs and build only")
         return Variant(label, Options(ranks=0, neighbours="all-pairs" if "all-pairs" in given else None, build=build))
     if "all-pairs" in given:
-        refuse("all-pairs is a search of the serial reference; write 'serial all-pairs'")
+        wrong("all-pairs is a search of the serial reference; write 'serial all-pairs'")
     isa = given.get("isa")
     if isa is not None and (isa not in INSTRUCTION_SETS or build is None):
-        refuse(f"isa is one of {', '.join(INSTRUCTION_SETS)}, and goes with a build, as in 'build portable isa plain'")
+        wrong(f"isa is one of {', '.join(INSTRUCTION_SETS)}, and goes with a build, as in 'build portable isa plain'")
     domains = given.get("domains")
     if domains is not None and not re.fullmatch(r"[1-9]\d*(x[1-9]\d*){1,2}", domains):
-        refuse(f"{domains!r} is no grid; write domains along each axis, as in 2x2")
+        wrong(f"{domains!r} is no grid; write domains along each axis, as in 2x2")
     implied = math.prod(map(int, domains.split("x"))) if domains else 2 if {"rebalance", "build"} & given.keys() else 1
     ranks = number(given["P"]) if "P" in given else implied
     if domains and ranks != implied:
-        refuse(f"{domains} are {implied} domains, not {ranks}; write P={implied} or leave P out")
+        wrong(f"{domains} are {implied} domains, not {ranks}; write P={implied} or leave P out")
     optional = {key: number(given[key]) for key in ("threads", "rebalance") if key in given}
     return Variant(label, Options(ranks=ranks, domains=domains, build=build, isa=isa, **optional))
 
@@ -153,28 +148,28 @@ def _variant(label: str, where: str, key: str) -> Variant:
 def read_equivalence(table: dict, where: str) -> Equivalence:
     """The table [case.equivalence]; `where` is its place, "file: case.equivalence". Throws CaseError."""
     if not isinstance(table, dict):
-        _refuse(where.rpartition(".")[0], where.rpartition(".")[2], table, "must be a table")
+        refuse(where.rpartition(".")[0], where.rpartition(".")[2], table, "must be a table")
     known = ("steps", "every", "variants")
     for key in table:
         if key not in known:
-            _refuse(where, key, table[key], f"unknown; known are {', '.join(known)}")
+            refuse(where, key, table[key], f"unknown; known are {', '.join(known)}")
     for key in known:
         if key not in table:
-            _refuse(where, key, None, "missing; add it")
+            refuse(where, key, None, "missing; add it")
     steps, every, labels = (table[key] for key in known)
     for key, value in (("steps", steps), ("every", every)):
         if not isinstance(value, int) or isinstance(value, bool) or value < 1:
-            _refuse(where, key, value, "must be a positive whole number of steps")
+            refuse(where, key, value, "must be a positive whole number of steps")
     if steps % every:
-        _refuse(where, "every", every, f"must divide steps = {steps}, so that the end is compared")
+        refuse(where, "every", every, f"must divide steps = {steps}, so that the end is compared")
     if not isinstance(labels, list) or not all(isinstance(label, str) for label in labels) or len(labels) < 2:
-        _refuse(where, "variants", labels, f"must be a list of at least two texts; words are {WORDS}")
+        refuse(where, "variants", labels, f"must be a list of at least two texts; words are {WORDS}")
     for index, label in enumerate(labels):
         if label in labels[:index]:
-            _refuse(where, f"variants[{index}]", label, "stands twice; remove one")
+            refuse(where, f"variants[{index}]", label, "stands twice; remove one")
     variants = tuple(_variant(label, where, f"variants[{index}]") for index, label in enumerate(labels))
     if any(variant.resumed_on for variant in variants) and steps < 2:
-        _refuse(where, "steps", steps, "must be at least 2 for a restart in the middle")
+        refuse(where, "steps", steps, "must be at least 2 for a restart in the middle")
     return Equivalence(steps, every, variants)
 
 

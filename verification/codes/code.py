@@ -14,7 +14,7 @@ from pathlib import Path
 from verification.protocol.adapter import BAD_INPUT, CANNOT
 from verification.protocol.capability import CAPABILITIES
 from verification.protocol.check import check_run
-from verification.protocol.errors import Beyond, CaseError, SolverError
+from verification.protocol.errors import Beyond, CaseError, Killed, SolverError, last_line
 from verification.protocol.machine import ROOT
 from verification.protocol.run import Run
 from verification.protocol.sources import checksum_of_sources, sources_of
@@ -22,6 +22,7 @@ from verification.protocol.sources import checksum_of_sources, sources_of
 FOLDER = Path(__file__).resolve().parent
 SPEAKS = re.compile(r'^if __name__ == "__main__":$', re.MULTILINE)
 OWN = ("reference", "verification.codes")  # packages that the results of an adapter may depend on
+SILENT = "it said nothing"
 PATIENCE = 60.0  # seconds that describe may take; a run has a tenth of it to end when told to
 
 
@@ -84,7 +85,7 @@ def _described(program: tuple[str, ...], adapter: str, build: str) -> dict:
     except (OSError, subprocess.TimeoutExpired) as error:
         raise CaseError(f"{line}: {error}") from None
     if done.returncode != 0:
-        raise CaseError(f"{line}: ended with {done.returncode}: {_last_line(done.stderr)}")
+        raise CaseError(f"{line}: ended with {done.returncode}: {last_line(done.stderr) or SILENT}")
     try:
         said = json.loads(done.stdout)
     except ValueError as error:
@@ -114,11 +115,6 @@ def _fault(said: object) -> str:
     if number is not None and (not isinstance(number, int) or isinstance(number, bool)):
         return f"numerics_version = {number!r}: must be an integer"
     return ""
-
-
-def _last_line(text: str) -> str:
-    lines = text.strip().splitlines()
-    return lines[-1] if lines else "it said nothing"
 
 
 def command(code: Code, scene_file: Path, out: Path, cores: int = 1, steps: int | None = None,
@@ -172,7 +168,7 @@ def run_code(code: Code, scene_file: Path, out: Path, cores: int = 1, steps: int
     """Runs a scene into the folder `out`, which may not hold anything, and checks what was left.
 
     Throws Beyond where the code cannot do the scene, CaseError where it cannot use its input, SolverError with its last
-    words where it failed, and OutputError where its files are not those of the protocol.
+    words where it failed (Killed where a signal ended it), and OutputError where its files are not those of the protocol.
     """
     if out.exists() and any(out.iterdir()):
         raise CaseError(f"--out {out}: holds files; give a folder that is empty")
@@ -180,10 +176,10 @@ def run_code(code: Code, scene_file: Path, out: Path, cores: int = 1, steps: int
     line = command(code, scene_file, out, cores, steps, options)
     status, stdout, stderr = call(line)
     if status == BAD_INPUT:
-        raise CaseError(_last_line(stderr))
+        raise CaseError(last_line(stderr) or SILENT)
     if status == CANNOT:
-        raise Beyond(_last_line(stderr))
+        raise Beyond(last_line(stderr) or SILENT)
     if status != 0:
-        raise SolverError(f"{' '.join(line)}\nended with {status}\n{stdout[-2000:]}{stderr[-4000:]}")
+        raise (Killed if status < 0 else SolverError)(f"{' '.join(line)}\nended with {status}\n{stdout[-2000:]}{stderr[-4000:]}")
     check_run(out, code.capabilities)
     return Run(out)

@@ -15,7 +15,7 @@ from reference.exact_flows import exact_flow
 from verification.codes.code import FOLDER, Code, call, command, find_code, run_code
 from verification.protocol.adapter import BAD_INPUT, CANNOT
 from verification.protocol.capability import CAPABILITIES, asked_by, lacking
-from verification.protocol.errors import Beyond, CaseError, SolverError
+from verification.protocol.errors import Beyond, CaseError, SolverError, last_line
 from verification.protocol.run import Run, read_points, read_time
 from verification.protocol.scene import in_si
 
@@ -76,7 +76,7 @@ def _ends(code: Code, folder: Path, what: str, text: str, status: int, word: str
     """Whether a scene ends with a status and a reason that holds a word, and leaves no run."""
     file, out = _written(folder, what.replace(" ", "_"), text)
     found, _, stderr = call(command(code, file, out))
-    reason = (stderr.strip().splitlines() or [""])[-1]
+    reason = last_line(stderr)
     faults = []
     if found != status:
         faults.append(f"ended with {found}, not {status}")

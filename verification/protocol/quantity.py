@@ -64,13 +64,14 @@ def write_result(result: Result, folder: Path) -> None:
     (folder / RESULT).write_text(json.dumps(asdict(result), indent=1) + "\n")
 
 
+def quantity_of(entry: dict) -> Quantity:
+    """From JSON, as asdict() of a quantity writes it; what an entry leaves out has its default."""
+    return Quantity(**(entry | {"levels": tuple(Level(**level) for level in entry.get("levels", []))}))
+
+
 def read_result(folder: Path) -> Result:
     data = json.loads((folder / RESULT).read_text())
-    data["quantities"] = {
-        name: Quantity(**(entry | {"levels": tuple(Level(**level) for level in entry["levels"])}))
-        for name, entry in data["quantities"].items()
-    }
-    return Result(**data)
+    return Result(**(data | {"quantities": {name: quantity_of(entry) for name, entry in data["quantities"].items()}}))
 
 
 def checksum_of(files: list[Path], root: Path) -> str:

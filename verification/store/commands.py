@@ -60,13 +60,9 @@ def prune(laboratory: Laboratory, folders: bool) -> int:
     """Stale are runs of an older numerics version of a code that is here."""
     if folders:
         print(f"{laboratory.drop_folders() / 2**20:.0f} MiB of folders removed; the store is as it was")
-    versions: dict[str, int | None] = {}
-    stale = []
-    for run in laboratory.store.runs():
-        if run.numerics is not None:
-            if run.code not in versions:
-                versions[run.code] = _numerics_of(run.code)
-            stale += [run.key] if versions[run.code] not in (None, run.numerics) else []
+    counted = [run for run in laboratory.store.runs() if run.numerics is not None]
+    now = {code: _numerics_of(code) for code in {run.code for run in counted}}
+    stale = [run.key for run in counted if now[run.code] not in (None, run.numerics)]
     print(f"{laboratory.store.remove(stale)} stale runs removed, and what codes refused or failed at is forgotten")
     laboratory.store.forget_refusals()
     return 0

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -47,7 +48,7 @@ class Request:
     cores: int = 1
     field: bool = False  # keep the last snapshot
 
-    @property
+    @cached_property
     def key(self) -> str:
         return run_key(self.code, self.scene, self.steps, self.options, self.cores)
 

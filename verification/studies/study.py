@@ -2,21 +2,21 @@
 
 import itertools
 import math
-import time
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from verification.codes.code import Code, find_code
-from verification.protocol.errors import Beyond, CaseError
+from verification.protocol.errors import Beyond, CaseError, refuse
 from verification.protocol.toml_text import value_text
 from verification.store.laboratory import Laboratory
-from verification.suite.ability import able
+from verification.suite.ability import stated_alone
 from verification.suite.case import Case
 from verification.suite.judge import Outcome
 from verification.suite.manifest import cases_folder, find_cases
 from verification.suite.parameters import scene_of
+from verification.suite.progress import time_left
 from verification.suite.references import resolved
 from verification.suite.runner import Entry, Job, Shelf, look_up, perform
 
@@ -53,18 +53,14 @@ class Result:
     outcome: Outcome
 
 
-def _refuse(file: Path, key: str, value: object, fix: str):
-    raise CaseError(f"{file}: study.{key} = {value!r}: {fix}")
-
-
-def _factors(file: Path, table: dict) -> dict[str, tuple[str, ...]]:
+def _factors(where: str, table: dict) -> dict[str, tuple[str, ...]]:
     if not isinstance(table, dict) or not table:
-        _refuse(file, "factors", table, "write a table [study.factors] of lists")
+        refuse(where, "factors", table, "write a table [study.factors] of lists")
     for key, values in table.items():
         if not isinstance(values, list) or not values:
-            _refuse(file, f"factors.{key}", values, "write a list of values")
+            refuse(where, f"factors.{key}", values, "write a list of values")
         if len({value_text(value) for value in values}) < len(values):
-            _refuse(file, f"factors.{key}", values, "a value stands twice; remove one")
+            refuse(where, f"factors.{key}", values, "a value stands twice; remove one")
     return {key: tuple(f"{key}={value_text(value)}" for value in values) for key, values in table.items()}
 
 
@@ -76,22 +72,23 @@ def read_study(file: Path) -> Study:
         raise CaseError(f"{file}: {error}; mend the TOML") from None
     if not isinstance(table, dict):
         raise CaseError(f"{file}: study: missing; add a table [study]")
+    where = f"{file}: study"
     for key in table:
         if key not in KEYS:
-            _refuse(file, key, table[key], f"unknown; known are {', '.join(KEYS)}")
+            refuse(where, key, table[key], f"unknown; known are {', '.join(KEYS)}")
     family, design, codes = file.parent.name, table.get("design", DESIGNS[0]), table.get("codes", ["mappm"])
     if design not in DESIGNS:
-        _refuse(file, "design", design, f"unknown; known are {', '.join(DESIGNS)}")
+        refuse(where, "design", design, f"unknown; known are {', '.join(DESIGNS)}")
     if not isinstance(codes, list) or not codes or not all(isinstance(code, str) for code in codes):
-        _refuse(file, "codes", codes, "write a list of names of codes")
+        refuse(where, "codes", codes, "write a list of names of codes")
     points = find_cases(f"{family}.{table['point']}" if "point" in table else family)
     if len(points) > 1:
-        _refuse(file, "point", None, f"choose one of {', '.join(case.name.partition('.')[2] for case in points)}")
+        refuse(where, "point", None, f"choose one of {', '.join(case.name.partition('.')[2] for case in points)}")
     name = f"{family}.{file.stem.removeprefix('study_')}"
     study = Study(name, points[0], " ".join(str(table.get("purpose", "")).split()), design, tuple(codes),
-                  _factors(file, table.get("factors")))
+                  _factors(where, table.get("factors")))
     if all(observable.live for observable in study.case.observables):
-        _refuse(file, "factors", table["factors"], f"{family} measures nothing that stands without another code; give it an observable")
+        refuse(where, "factors", table["factors"], f"{family} measures nothing that stands without another code; give it an observable")
     for setting in study.settings:
         scene_of(study.case, study.case.base + setting)
     return study
@@ -109,16 +106,6 @@ def find_study(name: str) -> Study:
     return read_study(known[name])
 
 
-def _job(study: Study, setting: Setting, code: Code) -> Job:
-    """Of the first observable that is held against no other code. Throws Beyond where the code cannot tell it."""
-    case = able(study.case, code)
-    observable = next(one for one in case.observables if not one.live)
-    if observable.skipped:
-        raise Beyond(observable.skipped)
-    alone = replace(case, observables=(replace(observable, order=None, extrapolated=None),), levels=(), vary=(), beside=())
-    return Job(alone, case.base + setting, code)
-
-
 def jobs_of(study: Study, say: Callable[[str], None] = print) -> list[Job]:
     """Of all codes that are installed and can do the case; the others are told to `say`."""
     jobs = []
@@ -126,7 +113,8 @@ def jobs_of(study: Study, say: Callable[[str], None] = print) -> list[Job]:
         try:
             if code.missing:
                 raise Beyond(code.missing)
-            jobs += [_job(study, setting, code) for setting in study.settings]
+            case = stated_alone(study.case, code)
+            jobs += [Job(case, study.case.base + setting, code) for setting in study.settings]
         except Beyond as error:
             say(f"{study.name}: {code.name} SKIPPED: {error}")
     return jobs
@@ -134,10 +122,10 @@ def jobs_of(study: Study, say: Callable[[str], None] = print) -> list[Job]:
 
 def run_study(laboratory: Laboratory, study: Study, workers: int, say: Callable[[str], None]) -> None:
     """What is missing, the cheapest first, so that there is something to see early. Throws what a run throws; what was made stays."""
-    jobs, started = jobs_of(study, say), time.monotonic()
+    jobs, left = jobs_of(study, say), time_left()
 
     def told(job: Job, share: float) -> None:
-        say(f"{study.name}: {job.code.name}, {job.label}: done; {(time.monotonic() - started) * (1 - share) / share:.0f} s to go")
+        say(f"{study.name}: {job.code.name}, {job.label}: done; {left(share):.0f} s to go")
 
     def skipped(job: Job, why: Beyond) -> None:
         say(f"{study.name}: {job.code.name}, {job.label}: SKIPPED: {why}")

@@ -24,3 +24,13 @@ def able(case: Case, code: Code) -> Case:
     own = {} if code.name in SOLVERS else {"vary": (), "beside": ()}
     observables = tuple(_with_reason(observable, code) for observable in case.observables)
     return replace(case, observables=observables, equivalence=case.equivalence if DIGEST in code.capabilities else None, **own)
+
+
+def stated_alone(case: Case, code: Code) -> Case:
+    """What any code can be asked of the case: its first observable that is held against no other code, on one level and judged by its
+    goal alone, with none of the knobs of one code. Throws Beyond where this code cannot tell it."""
+    asked = able(case, code)
+    observable = next(one for one in asked.observables if not one.live)
+    if observable.skipped:
+        raise Beyond(observable.skipped)
+    return replace(asked, observables=(replace(observable, order=None, extrapolated=None),), levels=(), live=None, vary=(), beside=())

@@ -7,6 +7,7 @@ import warnings
 
 from simpleeval import EvalWithCompoundTypes, InvalidExpression
 
+from verification.protocol.check import is_number
 from verification.protocol.errors import CaseError
 
 FUNCTIONS = {"sqrt": math.sqrt, "exp": math.exp, "log": math.log, "sin": math.sin, "cos": math.cos, "tan": math.tan,
@@ -40,7 +41,7 @@ def is_value(value: object) -> bool:
     """What a parameter or a formula may be: a finite number, a text, or a list of such."""
     if isinstance(value, list):
         return all(map(is_value, value))
-    return isinstance(value, str) or (isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value))
+    return isinstance(value, str) or is_number(value)
 
 
 def evaluated(text: str, names: dict, where: str):

@@ -10,8 +10,8 @@
     "fluid.spacing" = "1 / R_over_dx"
 
 A text KEY=VALUE of a point, a level, a variation or --set with a KEY without a dot sets a parameter; one with a dot, or the name of
-a whole table, sets the scene and wins over the formulas. The solver reads plain scenes and knows nothing of all this: it gets the
-file of the case and, as overrides, what differs.
+a whole table, sets the scene and wins over the formulas. Codes read plain scenes and know nothing of all this: scene_of
+gives them.
 """
 
 import copy

@@ -11,6 +11,12 @@ def _clock(seconds: float) -> str:
     return f"{minutes}:{seconds:02}"
 
 
+def time_left() -> Callable[[float], float]:
+    """Seconds to go of work that starts now, by the share of it that is behind."""
+    started = time.monotonic()
+    return lambda share: (time.monotonic() - started) * (1 - share) / share
+
+
 class Progress:
     """Stages of a job, one line each; a line that moves on a terminal, one every half minute elsewhere."""
 

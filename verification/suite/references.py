@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from reference.published import look_up
 from verification.codes.code import Code, find_code
 from verification.measures.measures import Values, measures_in
-from verification.protocol.errors import Beyond, CaseError, SolverError
-from verification.protocol.quantity import Level, Quantity
+from verification.protocol.errors import Beyond, CaseError, SolverError, last_line
+from verification.protocol.quantity import Quantity, quantity_of
 from verification.store.laboratory import Laboratory, Request
 from verification.suite.case import Case, Observable
 from verification.suite.judge import Entries
@@ -29,10 +29,6 @@ class Reference:
     key: str = ""  # of its run in the store
 
 
-def _quantity(stated: dict) -> Quantity:
-    return Quantity(**(stated | {"levels": tuple(Level(**level) for level in stated.get("levels", []))}))
-
-
 def reference_request(case: Case, tier: str, entries: Entries, code: Code) -> Request:
     """For the finest level of the tier; measure.py of the case may add options that follow from what was measured."""
     more = measures_in(case.file.parent).reference_options
@@ -50,7 +46,7 @@ def look_up_reference(laboratory: Shelf, case: Case, tier: str, entries: Entries
         return None
     record = stored.record
     return Reference(code.title, stored.version, record["command"], record.get("inputs", ""),
-                     {name: _quantity(stated) for name, stated in record.get("quantities", {}).items()},
+                     {name: quantity_of(stated) for name, stated in record.get("quantities", {}).items()},
                      record.get("objection", ""), key=stored.key)
 
 
@@ -63,7 +59,7 @@ def obtain_reference(laboratory: Laboratory, case: Case, tier: str, entries: Ent
     try:
         laboratory.obtain(reference_request(case, tier, entries, code))
     except (SolverError, Beyond) as error:
-        return Reference(code.title, code.version, objection=f"the reference code failed: {str(error).strip().splitlines()[-1]}")
+        return Reference(code.title, code.version, objection=f"the reference code failed: {last_line(str(error))}")
     return look_up_reference(laboratory, case, tier, entries, code)
 
 

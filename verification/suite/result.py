@@ -1,6 +1,5 @@
 """A case judged: every verdict there is on it, from what the laboratory holds."""
 
-import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -20,6 +19,7 @@ from verification.store.store import Found, Made
 from verification.suite.case import Case, Level
 from verification.suite.judge import SKIPPED, Entries, Outcome, beside, judge
 from verification.suite.parameters import scene_of
+from verification.suite.progress import time_left
 from verification.suite.references import Reference, look_up_reference, obtain_reference, resolved
 from verification.suite.runner import OWN, Entry, Job, Shelf, jobs_of, look_up, perform
 
@@ -104,11 +104,6 @@ class CaseResult:
         """Of its newest run."""
         found = [entry.stored.made for entry in self.entries.values()] + ([self.bits.made] if self.bits else [])
         return max(found, key=lambda made: made.made) if found else None
-
-    @property
-    def core_seconds(self) -> float:
-        """Of the finest run, without its set-up."""
-        return self.finest.stored.cost.core_seconds
 
     @property
     def lines(self) -> list[str]:
@@ -242,11 +237,10 @@ def finish(laboratory: Laboratory, case: Case, tier: str, code: Code) -> tuple[E
 
 def run_case(laboratory: Laboratory, case: Case, tier: str, code: Code, way: Way, say: Say) -> CaseResult:
     """All that the manifest asks for. `say` is told of every run that ends. Throws SolverError, CaseError, Beyond, StoreError."""
-    started = time.monotonic()
+    left = time_left()
 
     def told(job: Job, share: float) -> None:
-        left = (time.monotonic() - started) * (1 - share) / share
-        say(f"{case.name}: {job.label}: done; {left:.0f} s to go")
+        say(f"{case.name}: {job.label}: done; {left(share):.0f} s to go")
 
     jobs = jobs_of(case, tier, code, way.cores)
     perform(laboratory, jobs, way.workers, told, way.anew)

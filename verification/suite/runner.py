@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Protocol
 
@@ -66,7 +67,7 @@ class Job:
     def label(self) -> str:
         return " ".join(self.overrides[len(self.case.base) :]) or "as declared"
 
-    @property
+    @cached_property
     def request(self) -> Request:
         return Request(self.code, scene_of(self.case, self.overrides), f"{self.case.name}: {self.label}", cores=self.cores, field=self.finest)
 

@@ -1,22 +1,20 @@
 """Every code on every case that it can do: error and core-seconds at one resolution, that of the coarsest level."""
 
-import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from verification.codes.code import Code, all_codes, find_code
 from verification.measures.source import measure_id
-from verification.protocol.errors import Beyond, CaseError, SolverError
+from verification.protocol.errors import Beyond, CaseError, Killed, SolverError, last_line
 from verification.protocol.machine import commit
 from verification.store.key import hash_of
 from verification.store.laboratory import Laboratory
-from verification.suite.ability import able
+from verification.suite.ability import stated_alone
 from verification.suite.case import Case
 from verification.suite.judge import Outcome
 from verification.suite.manifest import all_cases
 from verification.suite.references import resolved
 from verification.suite.runner import Job, Shelf, look_up, obtain
 
-KILLED = re.compile(r"^ended with -\d", re.MULTILINE)  # by a signal
 NOT_PEERS = ("exact", "mappm-reference")  # the dummy, and the same solver again
 
 
@@ -27,7 +25,6 @@ class Cell:
     code: str
     outcome: Outcome | None = None
     core_seconds: float = 0.0
-    setup_core_seconds: float = 0.0
     why: str = ""
 
 
@@ -53,14 +50,8 @@ def table_cases() -> list[Case]:
 
 
 def _job(case: Case, code: Code) -> Job:
-    """Throws Beyond. All codes are asked the same: no observable that another code is the reference of, and none of the knobs of
-    one code."""
-    level = case.levels_of("quick")[0]
-    asked = able(case, code)
-    observables = tuple(replace(one, order=None, extrapolated=None) for one in asked.observables if not one.live)[:1]
-    if observables[0].skipped:
-        raise Beyond(observables[0].skipped)
-    return Job(replace(asked, observables=observables, live=None, vary=(), beside=()), level.overrides, code)
+    """On the coarsest level; all codes are asked the same. Throws Beyond."""
+    return Job(stated_alone(case, code), case.levels_of("quick")[0].overrides, code)
 
 
 def _failure_key(job: Job) -> str:
@@ -75,9 +66,9 @@ def _why_not(shelf: Shelf, job: Job) -> str:
 
 def missing_of_table(shelf: Shelf) -> list[Job]:
     """Runs that installed codes have not made or refused yet."""
-    jobs = []
+    jobs, codes = [], table_codes()
     for case in table_cases():
-        for code in table_codes():
+        for code in codes:
             try:
                 job = _job(case, code)
             except Beyond:
@@ -93,8 +84,8 @@ def make(laboratory: Laboratory, job: Job) -> str:
     try:
         obtain(laboratory, job)
     except (Beyond, SolverError, CaseError) as error:
-        words, key = str(error).strip().splitlines()[-1], job.request.key if isinstance(error, Beyond) else _failure_key(job)
-        if not KILLED.search(str(error)):
+        words, key = last_line(str(error)), job.request.key if isinstance(error, Beyond) else _failure_key(job)
+        if not isinstance(error, Killed):
             laboratory.store.enter_refusal(key, job.request.label, job.code.name, words)
         return words
     return ""
@@ -111,8 +102,7 @@ def _cell(shelf: Shelf, case: Case, code: Code) -> Cell:
     if entry is None:
         return Cell(code.title, why=_why_not(shelf, job) or "not run yet")
     (observable,) = resolved(job.case, None).observables
-    cost = entry.stored.cost
-    return Cell(code.title, Outcome(observable, entry.found.values[observable.name]), cost.core_seconds, cost.setup_core_seconds)
+    return Cell(code.title, Outcome(observable, entry.found.values[observable.name]), entry.stored.cost.core_seconds)
 
 
 def table(shelf: Shelf) -> list[TableRow]:

@@ -1,6 +1,5 @@
 """Runs what is missing of a tier."""
 
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -11,7 +10,7 @@ from verification.store.laboratory import Laboratory, Request
 from verification.suite.case import Case
 from verification.suite.manifest import all_cases, find_case
 from verification.suite.parameters import scene_of
-from verification.suite.progress import Progress
+from verification.suite.progress import Progress, time_left
 from verification.suite.result import finish, obtain_bits
 from verification.suite.runner import Job, jobs_of, look_up, perform, workers_of
 from verification.suite.table import make, missing_of_table
@@ -40,12 +39,8 @@ def shown_request(tier: str) -> Request:
 
 
 def _with_time(say: Say, words: Callable[[Job], str]) -> Callable[[Job, float], None]:
-    started = time.monotonic()
-
-    def told(job: Job, share: float) -> None:
-        say(words(job), (time.monotonic() - started) * (1 - share) / share)
-
-    return told
+    left = time_left()
+    return lambda job, share: say(words(job), left(share))
 
 
 def _references(laboratory: Laboratory, cases: list[Case], tier: str, code: Code, say: Say) -> None:
