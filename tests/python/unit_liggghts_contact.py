@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from reference.contact import granular
 from reference.contact.collision import collision_of, hertz, linear
 from reference.contact.motion import IMPACT, Motion, centre, fall_time, read_motion
 from reference.contact.scene import contact_scene
@@ -125,7 +126,7 @@ def test_a_dump_becomes_a_table(tmp_path: Path) -> None:
     scene = contact_scene(SCENE)
     head = "ITEM: TIMESTEP\n{}\n" + "x\n" * 7
     (tmp_path / "dump").write_text(head.format(0) + "1 1 2 3 4 5 6 7 8 9 10 11 12\n" + head.format(7) + "1 0 0 0 0 0 0 0 0 0 0 0 0\n")
-    impact.write_table(tmp_path / "dump", tmp_path / "table", scene)
+    granular.write_table(tmp_path / "dump", tmp_path / "table", scene)
     made = read_motion(tmp_path / "table", scene)
     assert made.time.tolist() == [0.0, 0.007]
     assert made.position[0, 0].tolist() == [1, 2, 3] and made.velocity[0, 0].tolist() == [4, 5, 6]

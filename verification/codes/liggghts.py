@@ -19,6 +19,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from reference.contact.granular import SOLIDS, problem_of
 from reference.liggghts import __main__ as program
 from reference.liggghts import flows, impact
 from reference.liggghts.program import MISSING, SCRIPT, installed, version
@@ -33,7 +34,6 @@ from verification.protocol.quantity import checksum_of
 PROBLEMS = ("impact", "rest", "fall", "sph")
 BACKGROUND = 2.0  # in rho U^2
 SHORTER = 0.2  # than the usual step: the pressure of a step is that of half a step before, and sound grows from some 0.05 h/c on
-SOLIDS = "solids.csv"
 
 
 def reference(task: Task) -> Left:
@@ -52,11 +52,10 @@ def reference(task: Task) -> Left:
 def solids(task: Task) -> Left:
     """Throws Cannot on what the contact law, the shapes or the styles do not know, or FailedScript."""
     try:
-        scene = impact.read_scene_of(task.scene, "")
+        scene = impact.read_scene_of(task.scene)
     except ValueError as error:
         raise Cannot(str(error)) from None
-    problem = "rest" if scene.gravity.any() and scene.faces else "impact"
-    result = impact.run(scene, task.out, "", problem)
+    result = impact.run(scene, task.out, "", problem_of(scene))
     (task.out / result.table).rename(task.out / SOLIDS)
     return Left(result.quantities, more={"inputs": result.inputs, "step": scene.step, "steps": scene.steps})
 
@@ -80,7 +79,7 @@ def fluid(task: Task) -> Left:
 
 
 class Liggghts(Adapter):
-    name = "liggghts"
+    name, title = "liggghts", "LIGGGHTS"
     capabilities = frozenset({FLUID, SPACE, WALLS, FREE_BODY, CONTACT})
 
     def version(self) -> str:

@@ -60,7 +60,7 @@ def as_it_stands(task: Task) -> Left:
 
 
 class OpenFoam(Adapter):
-    name = "openfoam"
+    name, title = "openfoam", "OpenFOAM"
     capabilities = frozenset({FLUID, SPACE, WALLS, FIXED_BODY, MOVING_BODY, FORCE_ON_BODY})
 
     def version(self) -> str:

@@ -23,7 +23,7 @@ from verification.protocol.capability import FLUID, SPACE, WALLS
 
 
 class PySph(Adapter):
-    name = "pysph"
+    name, title = "pysph", "PySPH"
     capabilities = frozenset({FLUID, SPACE, WALLS})
 
     def version(self) -> str:
