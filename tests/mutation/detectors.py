@@ -28,7 +28,7 @@ KINDS = {"case": (1, 99), "bits": (3, 4), "pytest": (1, 1), "gtest": (2, 2), "mp
 # Exit codes that say "failed", apart from death by a signal; any other is trouble of the detector's own.
 FAILED = {"case": {1}, "bits": {1}, "pytest": {1}, "gtest": {1}, "mpi": set(range(1, 256))}
 # The line that says why, most telling first.
-REASONS = (r"^E  +(.*)", r"(.*, (?:WRONG|NOT ACCEPTED|UNCONVERGED|CHANGED).*)", r"^(first difference.*)",
+REASONS = (r"^E  +(.*)", r"(.*[,;] (?:FAILED|INCONCLUSIVE|NOT CONVERGING|DIVERGING|CHANGED).*)", r"^(first difference.*)",
            r"^(rank \d+: .*)", r"^error: (.*)", r"(.*: Failure)", r"^(verification: .*)", r"^(\w*Error.*)", r"(.+)")
 
 

@@ -7,7 +7,7 @@ from types import ModuleType
 from verification.codes.code import Code, find_code
 from verification.protocol.run import Run
 from verification.store.laboratory import Laboratory
-from verification.suite.judge import CORRECT, Outcome
+from verification.suite.judge import Outcome
 from verification.suite.manifest import find_case
 from verification.suite.result import Way, run_with
 
@@ -22,10 +22,10 @@ def judged(name: str, folder: Path, *overrides: str) -> tuple[Run, dict[str, Out
     return laboratory.run(result.finest.stored.key), {outcome.observable.name: outcome for outcome in result.outcomes}
 
 
-def assert_correct(outcome: Outcome, goal: float) -> None:
-    """The verdict of the manifest, whose goal may be no looser than the one the test states."""
+def assert_holds(outcome: Outcome, goal: float) -> None:
+    """By the manifest, whose goal may be no looser than the one the test states."""
     assert outcome.observable.goal <= goal
-    assert outcome.verdict == CORRECT, outcome.line
+    assert outcome.holds, outcome.line
 
 
 def measure_module(name: str) -> ModuleType:

@@ -17,7 +17,7 @@ from verification.store.laboratory import Laboratory
 from verification.suite import table
 from verification.suite.ability import able
 from verification.suite.case import Case
-from verification.suite.judge import CORRECT, SKIPPED
+from verification.suite.judge import SKIPPED, VALIDATED, WITHIN_GOAL
 from verification.suite.manifest import find_case, read_cases
 from verification.suite.result import Way, collect, run_case
 
@@ -34,6 +34,7 @@ reference = 1.0
 uncertainty = 0.0
 source = "what is given"
 goal = 0.01
+since = 2026-11-22
 [[case.observable]]
 name = "drag"
 symbol = "F"
@@ -41,6 +42,7 @@ reference = 1.0
 uncertainty = 0.0
 source = "nobody at all"
 goal = 0.01
+since = 2026-11-22
 needs = ["force-on-body"]
 order = [1.0, 2.0]
 extrapolated = 0.01
@@ -139,11 +141,11 @@ def test_what_a_scene_asks_for_is_read_from_it(changes: dict, words: set[str]) -
 def test_what_was_skipped_neither_passes_nor_fails(tmp_path: Path, exact: Code) -> None:
     case, laboratory = able(case_in(tmp_path), exact), Laboratory(tmp_path / "runs")
     found = run_case(laboratory, case, "quick", exact, Way(), print)
-    assert [outcome.verdict for outcome in found.outcomes] == [CORRECT, SKIPPED, SKIPPED]  # the last at dx to 0
+    assert [outcome.verdict for outcome in found.outcomes] == [VALIDATED, SKIPPED, SKIPPED]  # the last at dx to 0
     assert found.holds and len(found.skipped) == 2
     for outcome in found.skipped:
         assert outcome.reason == "exact lacks force-on-body" and "SKIPPED: exact lacks force-on-body" in outcome.line
-        assert CORRECT not in outcome.line.replace(SKIPPED, "") and outcome.convergence_verdict == ""
+        assert VALIDATED not in outcome.line and outcome.state == ""
     assert collect(laboratory, case, "quick", exact).holds
 
 
@@ -157,7 +159,7 @@ def verification(folder: Path, *words: str) -> subprocess.CompletedProcess:
     ((), 77, "F = nan (SKIPPED: exact lacks force-on-body)"),
     ((("reference = 1.0\nuncertainty = 0.0\nsource = \"what", "reference = 2.0\nuncertainty = 0.0\nsource = \"what"),), 1, "SKIPPED"),
     ((('needs = ["force-on-body"]\n', ""), ('name = "drag"', 'name = "viscosity"'), ("order = [1.0, 2.0]\nextrapolated = 0.01\n", "")),
-     0, "CORRECT"),
+     0, "VALIDATED"),
     ((("[run]", BODY + "[run]"),), 77, "SKIPPED: exact lacks fixed-body"),
     ((('gradient = "x"', 'gradient = "y"'),), 77, "SKIPPED: exact: ")])
 def test_the_command_line_tells_a_skip_from_a_pass(tmp_path: Path, changes: tuple, status: int, line: str) -> None:
@@ -181,7 +183,7 @@ def test_a_cell_of_the_table_has_a_result_or_a_reason(tmp_path: Path, exact: Cod
     assert table._cell(laboratory, case, exact).why == "not run yet"
     table.make(laboratory, table._job(case, exact))
     cell = table._cell(laboratory, case, exact)
-    assert cell.outcome.verdict == CORRECT and cell.core_seconds > 0 and not cell.why
+    assert cell.outcome.verdict in (VALIDATED, WITHIN_GOAL) and cell.core_seconds > 0 and not cell.why
     assert table._cell(laboratory, find_case("cylinder_stokes.phi_0.2"), exact).why == "exact lacks fixed-body"
     assert table._cell(laboratory, case, replace(exact, missing="install it")).why == "install it"
 

@@ -16,11 +16,12 @@ from verification.protocol.errors import CaseError
 from verification.protocol.quantity import Level, Measured, Quantity, Result, read_result, write_result
 from verification.protocol.scene import in_si, with_overrides
 from verification.report.figures import family_figures
+from verification.report.headline import changes_of_standards
 from verification.store.laboratory import Laboratory
 from verification.store.store import Found
 from verification.suite import references, result
 from verification.suite.case import Case, Observable
-from verification.suite.judge import CORRECT, OPEN, SKIPPED, WRONG, Outcome, _at_zero, judge
+from verification.suite.judge import FAILED, INCONCLUSIVE, SKIPPED, VALIDATED, Outcome, _at_zero, judge
 from verification.suite.ladder import extrapolated
 from verification.suite.manifest import find_case, find_cases, read_cases
 from verification.suite.references import Reference, obtain_reference, reference_request, resolved
@@ -51,6 +52,7 @@ name = "drag"
 symbol = "F"
 live = "drag"
 goal = 0.02
+since = 2026-11-22
 [[case.level]]
 set = ["fluid.spacing=0.2"]
 [[case.level]]
@@ -83,13 +85,15 @@ def test_each_point_is_a_case_with_its_own_scene_and_runs(tmp_path: Path) -> Non
     assert Job(dense, (*base, "fluid.spacing=0.2"), ANY_CODE).weight == pytest.approx(30 / 8)
 
 
-def test_a_point_that_stalls_has_no_band(tmp_path: Path) -> None:
+def test_a_point_may_be_without_band_from_a_day_on(tmp_path: Path) -> None:
     file = written(tmp_path, "goal = 0.02", "goal = 0.02\norder = [1.0, 2.0]")
     text = file.read_text().replace("[[case.level]]", "[[case.level]]\nset = []\n[[case.level]]", 1)
-    file.write_text(text.replace('name = "dense"', 'name = "dense"\nstalls = "noise"'))
+    file.write_text(text.replace('name = "dense"', 'name = "dense"\nunbanded = { since = 2026-11-24, why = "noise" }'))
     thin, dense = read_cases(file)
-    assert (thin.observables[0].order, thin.stalls) == ((1.0, 2.0), "")
-    assert (dense.observables[0].order, dense.stalls) == (None, "noise")
+    assert (thin.observables[0].order, thin.remark) == ((1.0, 2.0), "")
+    assert (dense.observables[0].order, dense.remark) == (None, "noise")
+    (change,) = changes_of_standards([thin, dense])
+    assert (change.case, change.kind, f"{change.day}", change.why) == ("family.dense", "looser", "2026-11-24", "noise")
 
 
 def test_points_are_found_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -166,8 +170,8 @@ def test_the_figure_of_the_reference_code_is_what_is_judged_against(tmp_path: Pa
     found = judged(LIVE, tmp_path)
     assert found.observable.reference == 24.8 and found.observable.uncertainty == 0.1
     assert found.observable.source == "OpenFOAM 1912, drag: Richardson"
-    assert found.verdict == CORRECT  # 0.4 %; k u is 1.1 %
-    assert judged(LIVE, tmp_path, 25.5).verdict == WRONG
+    assert found.verdict == VALIDATED  # 0.4 %; k u is 1.1 %
+    assert judged(LIVE, tmp_path, 25.5).verdict == FAILED
 
 
 def test_a_missing_code_is_skipped_and_neither_passes_nor_fails(tmp_path: Path) -> None:
@@ -180,7 +184,7 @@ def test_a_missing_code_is_skipped_and_neither_passes_nor_fails(tmp_path: Path) 
                                   Reference("OpenFOAM", objection="it diverged")])
 def test_a_reference_that_cannot_serve_fails(tmp_path: Path, live: Reference) -> None:
     found = judged(live, tmp_path)
-    assert found.verdict == OPEN and not found.holds and found.reason
+    assert found.verdict == INCONCLUSIVE and not found.holds and found.reason
 
 
 H = [0.4, 0.2, 0.1]
@@ -188,7 +192,7 @@ H = [0.4, 0.2, 0.1]
 
 def test_levels_of_a_power_law_are_extrapolated_by_richardson() -> None:
     found = extrapolated(H, [50 + 3 * h**2 for h in H])
-    assert found.value == pytest.approx(50.0, rel=1e-9) and found.how == "Richardson, order 2.00"
+    assert found.value == pytest.approx(50.0, rel=1e-9) and found.how == "three levels, order 2.00"
     assert found.uncertainty == pytest.approx(0.25 * 0.03 / 2)  # a quarter of the correction 3 x 0.01, halved
     first = extrapolated(H, [50 + 3 * h for h in H])
     assert first.value == pytest.approx(50.0, rel=1e-9)
@@ -205,20 +209,20 @@ def test_the_extrapolated_value_has_its_own_goal() -> None:
     given = Observable("drag", "F", 50.0, 0.01, "nobody at all", goal=0.02, extrapolated=0.01)
     values = [50.3 + 3 * h**2 for h in H]
     levels = tuple(Measured(value, 0.0) for value in values)
-    finest = Outcome(given, levels[-1], {"resolution": 0.02, "Mach": 0.2}, tuple(H), levels)
+    finest = Outcome(given, levels[-1], {"resolution": 0.02, "Mach": 0.2}, spacings=tuple(H), levels=levels)
     found = _at_zero(finest)
     assert found.measured.value == pytest.approx(50.3) and found.observable.goal == 0.01
-    assert set(found.sources) == {"Mach", "extrapolation (Richardson, order 2.00)"} and found.verdict == CORRECT
-    tight = Outcome(replace(given, extrapolated=0.005), levels[-1], finest.sources, tuple(H), levels)
-    assert _at_zero(tight).verdict == WRONG
+    assert set(found.sources) == {"Mach", "extrapolation (three levels, order 2.00)"} and found.verdict == VALIDATED
+    tight = replace(finest, observable=replace(given, extrapolated=0.005))
+    assert _at_zero(tight).verdict == FAILED
 
 
 def test_an_objection_on_a_level_that_is_used_bars_the_extrapolation() -> None:
     given = Observable("drag", "F", 50.0, 0.01, "nobody at all", goal=0.02, extrapolated=0.01)
     levels = (Measured(51.0, 0.0, "not settled"), Measured(50.2, 0.0), Measured(50.1, 0.0))
-    assert _at_zero(Outcome(given, levels[-1], {}, tuple(H), levels)).verdict == OPEN
-    coarser = (Measured(55.0, 0.0, "not settled"), *(Measured(50 + 3 * h**2, 0.0) for h in H))
-    assert _at_zero(Outcome(given, coarser[-1], {"Mach": 0.1}, (0.8, *H), coarser)).verdict == CORRECT  # three levels count
+    assert _at_zero(Outcome(given, levels[-1], spacings=tuple(H), levels=levels)).verdict == INCONCLUSIVE
+    settled = tuple(Measured(50 + 3 * h**2, 0.0) for h in H)
+    assert _at_zero(Outcome(given, settled[-1], {"Mach": 0.1}, spacings=tuple(H), levels=settled)).verdict == VALIDATED
 
 
 LEVELS = """
@@ -233,6 +237,7 @@ reference = 50.0
 uncertainty = 0.1
 source = "nobody at all"
 goal = 0.02
+since = 2026-11-22
 extrapolated = 0.01
 [[case.level]]
 set = ["fluid.spacing=0.4"]
@@ -315,7 +320,7 @@ def test_a_reference_that_fails_is_an_objection_and_is_not_kept(tmp_path: Path, 
     assert found.objection == "the reference code failed: tiny: no levels are given" and not found.quantities
     assert laboratory.store.runs() == []
     outcome = Outcome(resolved(thin, found).observables[0], Measured(24.9, 0.0), {"resolution": 0.1})
-    assert outcome.verdict == OPEN and "no levels are given" in outcome.line
+    assert outcome.verdict == INCONCLUSIVE and "no levels are given" in outcome.line
 
 
 def test_results_of_single_points_are_kept_side_by_side(tmp_path: Path, laboratory: Laboratory, other: Tiny) -> None:

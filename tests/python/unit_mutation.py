@@ -76,8 +76,8 @@ def test_only_faults_that_exist_are_chosen() -> None:
     ("kind", "output", "reason"),
     [
         ("bits", "first difference at step 4:\n  ab  P=1\n", "first difference at step 4:"),
-        ("case", "x = 1 (reference 1, error 0 %, CORRECT)\ny = 2 (reference 1, error 1 %, WRONG)\n",
-         "y = 2 (reference 1, error 1 %, WRONG)"),
+        ("case", "x = 1 (reference 1, error 0 %, VALIDATED)\ny = 2 (reference 1, error 1 %, FAILED)\n",
+         "y = 2 (reference 1, error 1 %, FAILED)"),
         ("gtest", "Note\na.cpp:3: Failure\nExpected equality\n", "a.cpp:3: Failure Expected equality"),
         ("pytest", "F\n>  assert a\nE       assert 1 == 2\n", "assert 1 == 2"),
         ("bits", "", "no message"),

@@ -28,6 +28,7 @@ reference = {reference}
 uncertainty = 0.0
 source = "no force acts on the fluid"
 goal = 1e-9
+since = 2026-11-22
 
 [box]
 size = [1.0, 1.0]
@@ -87,7 +88,7 @@ def test_a_new_case_is_listed(cases: Path) -> None:
     assert [line.split()[0] for line in lines] == ["drifting", "faster"]
 
 
-@pytest.mark.parametrize(("name", "code", "verdict"), [("drifting", 0, "CORRECT"), ("faster", 1, "WRONG")])
+@pytest.mark.parametrize(("name", "code", "verdict"), [("drifting", 0, "WITHIN GOAL"), ("faster", 1, "FAILED")])
 def test_a_new_case_is_run_and_judged_by_its_own_measure(
     cases: Path, tmp_path: Path, name: str, code: int, verdict: str
 ) -> None:

@@ -49,6 +49,7 @@ name = "drag"
 symbol = "F"
 live = "drag"
 goal = 0.02
+since = 2026-11-22
 [[case.point]]
 name = "dense"
 set = ["phi=1"]

@@ -50,12 +50,12 @@ def test_a_scene_run_alone_is_asked_for_no_order(tmp_path: Path) -> None:
     assert any(observable.order for observable in case.observables)
     found = run_with(Laboratory(tmp_path), case, ("run.step_factor=1.0",), find_code("mappm"), Way())
     assert found.holds, "\n".join(found.lines)
-    assert all(outcome.convergence_verdict == "" for outcome in found.outcomes)
+    assert all(outcome.state == "" for outcome in found.outcomes)
 
 
 def test_the_judge_ends_with_its_verdict(tmp_path: Path) -> None:
     # A fluid at rest is at rest; one in uniform motion is not, and the case says so, also when asked again.
-    for velocity, code, verdict in (("[0,0]", 0, ", CORRECT"), ("[0.01,0]", 1, ", WRONG"), ("[0.01,0]", 1, ", WRONG")):
+    for velocity, code, verdict in (("[0,0]", 0, ", VALIDATED"), ("[0.01,0]", 1, ", FAILED"), ("[0.01,0]", 1, ", FAILED")):
         line = [sys.executable, "-m", "verification", "run", "rest", "--lab", str(tmp_path), "--set", "run.steps=10",
                 "--set", f"fluid.velocity={velocity}"]
         judged = subprocess.run(line, cwd=ROOT, capture_output=True, text=True)
@@ -152,6 +152,7 @@ reference = 3.0
 uncertainty = 0.0
 source = "nobody at all"
 goal = 0.01
+since = 2026-11-22
 [[case.level]]
 set = ["fluid.spacing=0.5"]
 [[case.level]]

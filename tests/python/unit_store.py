@@ -423,6 +423,7 @@ reference = 3.0
 uncertainty = 0.0
 source = "nobody at all"
 goal = 0.01
+since = 2026-11-22
 [box]
 size = [1.0, 1.0]
 [fluid]

@@ -1,6 +1,9 @@
 """The verdict logic. Oracles: series whose limit and order are known, and arithmetic done by hand."""
 
+import json
 import math
+from dataclasses import replace
+from datetime import date
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -12,123 +15,126 @@ from verification.protocol.errors import CaseError
 from verification.protocol.ledger import defects_of
 from verification.protocol.quantity import Measured
 from verification.protocol.series import Table
+from verification.report.headline import changes_of_standards, of_families, standard_text
 from verification.report.history import changes
 from verification.store.store import Ledger
-from verification.suite.case import Observable, Vary
-from verification.suite.judge import CONVERGING, CORRECT, NOT_CONVERGING, OPEN, STALLED, WRONG, Outcome, _varied
-from verification.suite.ladder import converge, error_order, extrapolated, observed_order
-from verification.suite.manifest import read_cases
+from verification.suite.case import Case, Observable, Standard, Vary
+from verification.suite.judge import CODE_TO_CODE, FAILED, INCONCLUSIVE, VALIDATED, WITHIN_GOAL, Outcome, _converge, _varied
+from verification.suite.ladder import CONVERGING, DIVERGING, NOT_CONVERGING
+from verification.suite.manifest import all_cases, read_cases
 from verification.suite.result import Exactness, exactness
 from verification.suite.runner import Job, jobs_of
 
 GIVEN = Observable("drag", "F", reference=50.0, uncertainty=0.0, source="nobody", goal=0.02)
 
 
-def power_series(h: list[float], limit: float = 50.0, factor: float = 3.0, order: float = 2.0) -> list[float]:
-    return [limit + factor * value**order for value in h]
-
-
-@pytest.mark.parametrize("h", [[0.4, 0.2, 0.1], [0.3, 0.2, 0.1], [0.2, 0.15, 0.1]])
-@pytest.mark.parametrize("order", [1.0, 2.0, 3.0])
-def test_the_order_of_a_power_law_is_found_for_any_ratio(h: list[float], order: float) -> None:
-    values = power_series(h, order=order)
-    assert observed_order(h, values) == pytest.approx(order, rel=1e-6)
-    assert error_order(h, [value - 50.0 for value in values]) == pytest.approx(order, rel=1e-9)
-    assert converge(h, values).richardson == pytest.approx(50.0, rel=1e-9)
-
-
-def test_the_index_bounds_the_error_of_a_power_law_by_its_safety_factor() -> None:
-    h = [0.4, 0.2, 0.1]
-    values = power_series(h)
-    assert converge(h, values).gci == pytest.approx(1.25 * (values[-1] - 50.0), rel=1e-9)
-
-
-def test_levels_that_swing_have_no_order_and_a_wider_index() -> None:
-    found = converge([0.4, 0.2, 0.1], [50.3, 49.9, 50.1])
-    assert math.isnan(found.order) and math.isnan(found.richardson)
-    assert found.gci == pytest.approx(3.0 * 0.2)  # first order, ratio 2, factor 3
-
-
-def test_two_levels_give_an_index_without_order() -> None:
-    assert converge([0.2, 0.1], [50.2, 50.1]).gci == pytest.approx(0.3)
-
-
-def test_a_level_that_is_no_number_has_no_order_and_no_limit() -> None:
-    h, values = [0.4, 0.2, 0.1], [50.3, math.nan, 50.1]
-    assert math.isnan(error_order(h, values)) and math.isnan(observed_order(h, values))
-    assert math.isnan(extrapolated(h, values).value) and math.isnan(converge(h, values).gci)
-    given = Observable("drag", "F", 50.0, 0.0, "nobody", goal=0.1, order=(1.5, 2.5))
-    levels = tuple(Measured(value, 0.0) for value in values)
-    assert not Outcome(given, levels[-1], {"resolution": 5.0}, tuple(h), levels).holds
-
-
 def outcome(value: float, sources: dict[str, float], observable: Observable = GIVEN, **more) -> Outcome:
     return Outcome(observable, Measured(value, 0.0), sources, **more)
 
 
-def test_the_tolerance_is_two_u_val_and_no_wider_than_the_goal() -> None:
+def test_a_value_is_validated_where_both_bounds_say_so() -> None:
     judged = outcome(50.4, {"step": 0.3, "resolution": 0.4})  # u_num = 0.5, of 50: 1 %, k u = 2 %
-    assert judged.tolerance == pytest.approx(0.02)
-    assert judged.verdict == CORRECT
-    assert outcome(51.2, {"resolution": 5.0}).verdict == WRONG  # 2.4 %: noise does not widen the goal
-    assert outcome(50.4, {"resolution": 0.1}).verdict == WRONG  # 0.8 % within the goal, but k u is 0.4 %
-    assert "not explained by its uncertainty" in outcome(50.4, {"resolution": 0.1}).reason
-    assert outcome(49.6, {"resolution": 0.3}).verdict == CORRECT
-    assert outcome(49.6, {"resolution": 0.1}).verdict == WRONG
+    assert judged.bound == pytest.approx(0.02) and judged.verdict == VALIDATED
+    assert "VALIDATED: k u = 2 %, goal 2 %" in judged.line
+    assert outcome(49.6, {"resolution": 0.3}).verdict == VALIDATED
+
+
+def test_what_is_beyond_the_goal_or_not_explained_by_its_uncertainty_has_failed() -> None:
+    assert outcome(51.2, {"resolution": 5.0}).verdict == FAILED  # 2.4 %: noise does not widen the goal
+    assert outcome(48.8, {"resolution": 5.0}).verdict == FAILED
+    few = outcome(50.4, {"resolution": 0.1})  # 0.8 % within the goal, but k u is 0.4 %
+    assert few.verdict == FAILED and "not explained by its uncertainty, k u = 0.4 %" in few.reason
+    assert outcome(49.6, {"resolution": 0.1}).verdict == FAILED
+
+
+def test_where_the_uncertainty_is_wider_than_the_goal_nothing_is_resolved() -> None:
+    judged = outcome(50.4, {"resolution": 2.0})  # the referee's sphere: k u 8 % where the goal is 2 %
+    assert judged.verdict == WITHIN_GOAL and judged.holds and "k u = 8 %, goal 2 %" in judged.line
 
 
 def test_uncertainties_of_reference_and_inputs_count() -> None:
     given = Observable("drag", "F", 50.0, uncertainty=0.3, source="nobody", goal=0.05, input=0.4)
-    assert outcome(50.9, {"step": 1e-9}, given).verdict == CORRECT  # 1.8 %, u_val = 1 %
-    assert outcome(51.1, {"step": 1e-9}, given).verdict == WRONG
+    assert outcome(50.9, {"step": 1e-9}, given).verdict == VALIDATED  # 1.8 %, u_val = 1 %
+    assert outcome(51.1, {"step": 1e-9}, given).verdict == FAILED
 
 
-def test_a_norm_is_judged_by_its_goal() -> None:
+def test_few_starts_widen_k() -> None:
+    starts = outcome(50.0, {"disorder": 0.1}, freedom={"disorder": 4})
+    assert starts.coverage == pytest.approx(2.776, abs=1e-3) and starts.bound == pytest.approx(2.776 * 0.1 / 50, rel=1e-3)
+    assert outcome(50.0, {"disorder": 0.1}).coverage == 2.0
+
+
+def test_a_norm_has_failed_beyond_its_goal_alone() -> None:
     norm = Observable("rms", "e", reference=0.0, uncertainty=0.0, source="exact", goal=0.005)
-    assert outcome(0.004, {"resolution": 1e-6}, norm).verdict == CORRECT
-    assert outcome(0.006, {"resolution": 1.0}, norm).verdict == WRONG
+    assert outcome(0.004, {"resolution": 0.0022}, norm).verdict == VALIDATED  # converges to 0: 0.004 <= 0.0044 <= goal
+    assert outcome(0.004, {"resolution": 1e-6}, norm).verdict == WITHIN_GOAL  # it stands at its floor
+    assert outcome(0.004, {"resolution": 1.0}, norm).verdict == WITHIN_GOAL
+    assert outcome(0.006, {"resolution": 1.0}, norm).verdict == FAILED
+    assert outcome(0.0, {}, replace(norm, goal=0.0)).verdict == VALIDATED  # exactly
 
 
-def test_without_a_source_of_uncertainty_the_goal_decides_and_the_line_says_so() -> None:
+def test_without_an_estimate_of_its_error_a_value_is_not_validated_and_the_line_says_so() -> None:
     judged = outcome(50.4, {"time": 0.01})
-    assert judged.by_goal_alone and judged.verdict == CORRECT
-    assert "CORRECT by goal 2 %" in judged.line
+    assert not judged.is_estimated and judged.verdict == WITHIN_GOAL
+    assert "WITHIN GOAL: goal 2 %, no estimate of its own error" in judged.line
 
 
-def test_an_objection_is_never_correct() -> None:
+def test_agreement_with_a_code_of_the_same_law_is_no_validation() -> None:
+    same = replace(GIVEN, live="drag", code_to_code=True)
+    assert outcome(50.4, {"step": 0.5}, same).verdict == CODE_TO_CODE
+    assert outcome(51.4, {"step": 5.0}, same).verdict == FAILED
+
+
+def test_an_objection_is_inconclusive() -> None:
     judged = Outcome(GIVEN, Measured(50.0, 0.0, "forces out of balance by 3 %"))
-    assert judged.verdict == OPEN and not judged.holds
+    assert judged.verdict == INCONCLUSIVE and not judged.holds
 
 
-LEVELS = {"spacings": (0.4, 0.2, 0.1)}
+H = (0.4, 0.2, 0.1)
 
 
-def levels(h: tuple[float, ...], order: float) -> tuple[Measured, ...]:
-    return tuple(Measured(value, 0.0) for value in power_series(list(h), order=order))
+def judged_levels(values: list[float], observable: Observable = GIVEN, case: SimpleNamespace | None = None) -> Outcome:
+    found = tuple(Measured(value, 0.0) for value in values)
+    return _converge(case or SimpleNamespace(refined="spacing"), Outcome(observable, found[-1], {"Mach": 0.4}, spacings=H, levels=found))
 
 
-@pytest.mark.parametrize(("order", "verdict"), [(2.0, CONVERGING), (0.5, NOT_CONVERGING), (3.5, NOT_CONVERGING)])
-def test_the_observed_order_must_lie_in_its_band(order: float, verdict: str) -> None:
-    given = Observable("drag", "F", 50.0, 0.0, "nobody", goal=0.1, order=(1.5, 2.5))
-    found = levels(LEVELS["spacings"], order)
-    judged = Outcome(given, found[-1], {"resolution": 5.0}, LEVELS["spacings"], found)
-    assert judged.convergence_verdict == verdict
-    assert judged.holds == (verdict == CONVERGING)
+def of_order(order: float) -> list[float]:
+    return [50.0 + 3.0 * h**order for h in H]
 
 
-def test_a_stall_is_said_and_does_not_fail() -> None:
-    found = levels(LEVELS["spacings"], 0.1)
-    judged = Outcome(GIVEN, found[-1], {"resolution": 5.0}, LEVELS["spacings"], found, stalls="the kernel's own error")
-    assert judged.convergence_verdict == STALLED
+@pytest.mark.parametrize(("order", "state", "holds"), [(2.0, CONVERGING, True), (0.6, NOT_CONVERGING, False), (3.5, NOT_CONVERGING, False)])
+def test_a_declared_band_must_be_met(order: float, state: str, holds: bool) -> None:
+    given = replace(GIVEN, goal=0.1, order=(1.5, 2.5))
+    judged = judged_levels(of_order(order), given)
+    assert (judged.state, judged.holds) == (state, holds)
+
+
+def test_without_a_band_levels_that_do_not_converge_are_said_and_do_not_fail() -> None:
+    judged = judged_levels(of_order(0.1), replace(GIVEN, goal=0.1))
+    assert judged.state == NOT_CONVERGING and judged.converges_as_asked and "NOT CONVERGING, observed order 0.10" in judged.line
+
+
+def test_what_diverges_fails_whatever_the_error() -> None:
+    judged = judged_levels([50.0, 50.1, 50.4], replace(GIVEN, uncertainty=1e-6))
+    assert judged.verdict == WITHIN_GOAL and judged.state == DIVERGING and not judged.holds
+    assert "observed order below 0" in judged.line and "in [" not in judged.line
+
+
+def test_the_bound_of_the_levels_is_a_source() -> None:
+    judged = judged_levels(of_order(2.0))
+    assert judged.sources["resolution"] == pytest.approx(1.25 * 0.03 / 2, rel=1e-6)
+    assert judged_levels(of_order(2.0), case=SimpleNamespace(refined="step")).sources["step"] == judged.sources["resolution"]
 
 
 def test_a_varied_source_is_extrapolated_by_its_order() -> None:
     # Step halved, first order: the error is twice the change; half of 1.25 times that is the standard uncertainty.
-    assert _varied(Vary("step", (("a",),), 2.0, 1.0), Measured(50.0, 0.0), [50.1]) == pytest.approx(0.125)
+    assert _varied(Vary("step", (("a",),), 2.0, 1.0), 50.0, [50.1]) == pytest.approx(0.125)
     # Sound speed doubled, second order: 4/3 of the change.
-    assert _varied(Vary("Mach", (("a",),), 2.0, 2.0), Measured(50.0, 0.0), [49.7]) == pytest.approx(0.25)
-    # Seeds: the scatter of all runs, 50.0 among them.
-    assert _varied(Vary("disorder", (("a",), ("b",)), None, 1.0), Measured(50.0, 0.0), [50.1, 49.9]) == pytest.approx(0.1)
+    assert _varied(Vary("Mach", (("a",),), 2.0, 2.0), 50.0, [49.7]) == pytest.approx(0.25)
+    # Starts: the scatter of all runs, 50.0 among them.
+    assert _varied(Vary("disorder", (("a",), ("b",)), None, 1.0, seeds=True), 50.0, [50.1, 49.9]) == pytest.approx(0.1)
+    # Other choices: anywhere in their range.
+    assert _varied(Vary("shift", (("a",), ("b",)), None, 1.0), 50.0, [50.3, 50.1]) == pytest.approx(0.15 / math.sqrt(3))
 
 
 MANIFEST = """
@@ -151,6 +157,21 @@ reference = 1.0
 uncertainty = 0.0
 source = "nobody at all"
 goal = 0.1
+since = 2026-11-22
+"""
+
+EARLIER = """
+[[case.observable.earlier]]
+since = 2026-11-20
+goal = 0.05
+"""
+RETIRED = """
+[[case.retired]]
+name = "lift"
+symbol = "L"
+since = 2026-11-20
+goal = 0.05
+until = 2026-11-22
 """
 
 
@@ -193,6 +214,14 @@ set = ["fluid.method=classic"]
         (OBSERVABLE + "order = [1.0, 2.0]", "an order needs three levels"),
         ('[[case.vary]]\nsource = "step"\nsets = [["a=1"]]', "one entry without a ratio says nothing"),
         ('[[case.vary]]\nsource = "step"\nsets = [["a=1"]]\nratio = 1', "must be above 1"),
+        ('[[case.vary]]\nsource = "start"\nseeds = [["a=1"], ["a=2"], ["a=3"]]', "4 starts in all; 5 are the fewest"),
+        ('[[case.vary]]\nsource = "start"\nseeds = [["a=1"]]\nratio = 2', "ratio: does not go with seeds"),
+        (OBSERVABLE + "order = [1.0, 3.0]", "beyond [0.5, 2.5]"),
+        (OBSERVABLE.replace("since = 2026-11-22", ""), "since: missing; add the day"),
+        (OBSERVABLE.replace("2026-11-22", '"2026-11-22"'), "write a day, such as 2026-11-22, without quotes"),
+        (OBSERVABLE + EARLIER, "observable[0].why: missing; it asks for less than what was there before"),
+        (OBSERVABLE + 'why = "it missed it"\n' + EARLIER.replace("11-20", "11-24"), "put the oldest first"),
+        (RETIRED, "retired[0].why: missing"),
         ('[[case.level]]\nset = "a=1"', "wrong type"),
         ('[[case.level]]\nset = []\ntier = "slow"', "tier = 'slow': unknown"),
         (OBSERVABLE + "goal2 = 1", "goal2: unknown"),
@@ -232,24 +261,69 @@ def test_a_case_is_exact_where_all_its_runs_are() -> None:
     assert exactness(entries | {("d",): of("wrong", Ledger(1, ("a defect",)))}) == Exactness(3, 8, ("wrong: a defect",))
 
 
-def entry(error: float, uncertainty: float = 0.001, goal: float = 0.02) -> dict:
-    return {"error": error, "uncertainty": uncertainty, "goal": goal, "value": 1.0, "verdict": CORRECT}
+def entry(error: float, goal: float = 0.02) -> dict:
+    return {"error": error, "uncertainty": 0.001, "goal": goal, "value": 1.0 + error, "verdict": VALIDATED}
 
 
-def test_the_trend_names_what_moved_by_more_than_its_uncertainty() -> None:
-    before = [{"errors": {"a": entry(0.010), "b": entry(0.010), "gone": entry(0.0)}}]
-    found = changes(before, {"a": entry(0.0105), "b": entry(0.015), "c": entry(0.0)})
-    assert {row["key"]: row["what"] for row in found} == {"b": "moved", "gone": "no longer judged", "c": "new"}
+def test_the_trend_names_all_that_moved() -> None:
+    """Runs are exact to the bit: what is another value by a little is another program."""
+    before = [{"errors": {"a": entry(0.01), "b": entry(0.01), "d": entry(0.01), "gone": entry(0.0)}}]
+    found = changes(before, {"a": entry(0.01 + 1e-13), "b": entry(0.0101), "c": entry(0.0), "d": entry(0.02)})
+    assert [(row["key"], row["what"]) for row in found] == [("gone", "no longer judged"), ("c", "new"), ("d", "moved"), ("b", "moved")]
     assert changes([], {"a": entry(1.0)}) == []
 
 
-def test_a_miss_that_is_explained_stays_wrong_and_says_why() -> None:
+def test_a_miss_that_is_explained_has_failed_and_says_why() -> None:
     known = Observable("drag", "F", 1.0, 0.0, "made up", goal=0.01, explained="the lattice resists",
                        explained_goal=0.15)
     missed, met = Outcome(known, Measured(1.1, 0.0)), Outcome(known, Measured(1.001, 0.0))
     assert not Outcome(known, Measured(1.2, 0.0)).passes and not Outcome(known, Measured(float("nan"), 0.0)).passes
-    assert missed.verdict == WRONG and not missed.holds and missed.passes
+    assert missed.verdict == FAILED and not missed.holds and missed.passes
     assert "beyond the goal 1 %; explained: the lattice resists" in missed.line
-    assert met.verdict == CORRECT and met.holds and not met.explained and "explained" not in met.line
+    assert met.verdict == WITHIN_GOAL and met.holds and not met.explained and "explained" not in met.line
     unknown = Outcome(Observable("drag", "F", 1.0, 0.0, "made up", goal=0.01), Measured(1.1, 0.0))
     assert not unknown.passes
+
+
+# --- the register of goals
+
+
+def test_a_goal_has_its_days_and_reasons(tmp_path: Path) -> None:
+    (case,) = read_cases(written(tmp_path, OBSERVABLE + 'why = "it missed it"\n' + EARLIER + RETIRED + 'why = "no reference"\n'))
+    (one,), (gone,) = case.observables, case.retired
+    assert one.earlier == (Standard(date(2026, 11, 20), 0.05),) and one.standard == Standard(date(2026, 11, 22), 0.1, why="it missed it")
+    assert one.standard.is_looser_than(one.earlier[0]) and not one.earlier[0].is_looser_than(one.standard)
+    assert (gone.symbol, gone.until, gone.why) == ("L", date(2026, 11, 22), "no reference")
+    left, looser = changes_of_standards([case])
+    assert (left.kind, left.symbol, left.after) == ("left out", "L", None)
+    assert (looser.kind, looser.why, standard_text(looser.before), standard_text(looser.after)) == ("looser", "it missed it", "0.05", "0.1")
+
+
+@pytest.mark.parametrize(("before", "after", "looser"), [
+    ({}, {"goal": 0.2}, True), ({}, {"goal": 0.05}, False), ({"order": (1.0, 2.0)}, {}, True), ({}, {"order": (1.0, 2.0)}, False),
+    ({"order": (1.0, 2.0)}, {"order": (0.9, 2.0)}, True), ({"order": (1.0, 2.0)}, {"order": (1.2, 1.8)}, False),
+    ({"extrapolated": 0.01}, {}, True), ({"extrapolated": 0.01}, {"extrapolated": 0.02}, True)])
+def test_what_asks_for_less_is_looser(before: dict, after: dict, looser: bool) -> None:
+    day = date(2026, 11, 22)
+    assert Standard(day, **({"goal": 0.1} | after)).is_looser_than(Standard(day, **({"goal": 0.1} | before))) == looser
+
+
+def lines_of(name: str, case: Case) -> list[str]:
+    """What of the register is in the manifest of a case, oldest first, a line each."""
+    found = []
+    for one in case.observables:
+        for standard in (*one.earlier, one.standard):
+            found.append([name, one.against, f"{standard.since}", standard_text(standard)])
+    found += [[name, one.symbol, f"{one.standard.since}", standard_text(one.standard), f"left out {one.until}"] for one in case.retired]
+    return [json.dumps(line, ensure_ascii=False) for line in found]
+
+
+def test_the_register_is_only_added_to() -> None:
+    """register.jsonl holds every goal there ever was. A goal that was changed without leaving the old one in its manifest, or an
+    observable that was taken out without a word, is missed here."""
+    kept = (Path(__file__).parent / "register.jsonl").read_text().splitlines()
+    now = sorted(line for name, case in of_families(all_cases()) for line in lines_of(name, case))
+    lost = [line for line in kept if line not in now]
+    assert not lost, "write them back, as [[case.observable.earlier]] or [[case.retired]]: " + "; ".join(lost)
+    new = [line for line in now if line not in kept]
+    assert not new, "add to tests/python/register.jsonl:\n" + "\n".join(new)

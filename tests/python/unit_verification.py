@@ -13,7 +13,7 @@ from verification.protocol.errors import CaseError
 from verification.protocol.quantity import Measured
 from verification.protocol.series import first_difference, read_table
 from verification.suite.case import Observable
-from verification.suite.judge import CORRECT, OPEN, WRONG, Outcome
+from verification.suite.judge import FAILED, INCONCLUSIVE, WITHIN_GOAL, Outcome
 from verification.suite.manifest import all_cases, read_cases
 from verification.suite.runner import measures_of
 
@@ -78,7 +78,7 @@ GIVEN = Observable("drag", "F", 50.0, 0.1, "hand", 0.03)
 
 @pytest.mark.parametrize(
     ("value", "objection", "verdict"),
-    [(51.49, "", CORRECT), (48.51, "", CORRECT), (51.51, "", WRONG), (48.49, "", WRONG), (50.0, "unsettled", OPEN)],
+    [(51.49, "", WITHIN_GOAL), (48.51, "", WITHIN_GOAL), (51.51, "", FAILED), (48.49, "", FAILED), (50.0, "unsettled", INCONCLUSIVE)],
 )
 def test_verdicts(value: float, objection: str, verdict: str) -> None:
     # However noisy a figure is, its noise does not widen the goal.
@@ -87,8 +87,8 @@ def test_verdicts(value: float, objection: str, verdict: str) -> None:
     assert outcome.line.startswith(f"F = {value:g} +- 10 (reference 50 +- 0.1, error ")
 
 
-def test_a_figure_that_is_no_number_is_wrong() -> None:
-    assert Outcome(GIVEN, Measured(math.nan, 0.0)).verdict == WRONG
+def test_a_figure_that_is_no_number_has_failed() -> None:
+    assert Outcome(GIVEN, Measured(math.nan, 0.0)).verdict == FAILED
 
 
 def test_every_case_has_a_sound_manifest() -> None:

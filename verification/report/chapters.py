@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from verification.report.figures import CaseFigures
-from verification.suite.judge import CORRECT, Outcome
+from verification.suite.judge import SKIPPED, Outcome
 from verification.suite.result import CaseResult, Exactness
 
 
@@ -51,8 +51,8 @@ def _rows_of(family: Family) -> list[Row]:
         return [Row(result.case.name, result, outcome) for result, outcome in pairs]
     rows, alike = [], {}
     for result, outcome in pairs:
-        if outcome.verdict == CORRECT and outcome.holds:
-            alike.setdefault(outcome.observable.against, []).append((result, outcome))
+        if outcome.holds and outcome.verdict != SKIPPED:
+            alike.setdefault((outcome.observable.against, outcome.verdict, outcome.state), []).append((result, outcome))
         else:
             rows.append(Row(result.case.name, result, outcome))
     for members in alike.values():

@@ -10,9 +10,8 @@ import numpy as np
 
 from verification.measures.budget import body_work
 from verification.measures.curve import Chart
-from verification.protocol.quantity import COVERAGE
 from verification.protocol.run import Run
-from verification.suite.judge import CORRECT, SKIPPED, Outcome
+from verification.suite.judge import CODE_TO_CODE, SKIPPED, VALIDATED, WITHIN_GOAL, Outcome
 from verification.suite.result import CaseResult
 
 matplotlib.use("Agg")
@@ -82,8 +81,8 @@ def overview(outcomes: list[tuple[str, Outcome]], file: Path) -> None:
         axes.axvline(0, color=DARK, linewidth=0.8)
         for row, (_, outcome) in enumerate(shown):
             goal = outcome.observable.goal
-            bar = COVERAGE * outcome.uncertainty / goal if not outcome.by_goal_alone else 0.0
-            colour = {CORRECT: BLUE, SKIPPED: GREY}.get(outcome.verdict, RED)
+            bar = outcome.bound / goal if outcome.is_estimated else 0.0
+            colour = {VALIDATED: GREEN, WITHIN_GOAL: BLUE, CODE_TO_CODE: GREY}.get(outcome.verdict, RED)
             position = float(np.clip(outcome.error / goal, -1.9, 1.9))
             axes.errorbar(position, row, xerr=min(bar, 4.0), fmt="o", color=colour, markersize=4, capsize=2, linewidth=1)
         axes.set_yticks(range(len(shown)), [f"{name}: {outcome.observable.against}" for name, outcome in shown], fontsize=8)

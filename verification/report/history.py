@@ -1,6 +1,7 @@
 """Earlier reports: reports/published/history.json, an entry for each that was published."""
 
 import json
+import math
 from pathlib import Path
 
 from verification.suite.judge import SKIPPED
@@ -28,8 +29,19 @@ def read_history(file: Path) -> list[dict]:
     return json.loads(file.read_text()) if file.exists() else []
 
 
+ROUNDING = 1e-9  # of a measure; the runs themselves have none
+
+
+def _distance(row: dict) -> float:
+    """By how much it moved, in goals; infinite for what is new or gone."""
+    if row["what"] != "moved":
+        return math.inf
+    return abs(row["new"]["error"] - row["old"]["error"]) / (row["new"]["goal"] or 1.0)
+
+
 def changes(history: list[dict], errors: dict[str, dict]) -> list[dict]:
-    """Against the last entry: what is new, gone, or moved by more than its uncertainty (and by a tenth of its goal)."""
+    """Against the last entry: what is new, gone, or moved at all, as runs are exact to the bit; those that moved most for their goal
+    first."""
     if not history:
         return []
     before, rows = history[-1]["errors"], []
@@ -37,6 +49,6 @@ def changes(history: list[dict], errors: dict[str, dict]) -> list[dict]:
         old, new = before.get(key), errors.get(key)
         if old is None or new is None:
             rows.append({"key": key, "old": old, "new": new, "what": "new" if old is None else "no longer judged"})
-        elif abs(new["error"] - old["error"]) > max(new["uncertainty"], 0.1 * new["goal"]):
+        elif not math.isclose(new["value"], old["value"], rel_tol=ROUNDING):
             rows.append({"key": key, "old": old, "new": new, "what": "moved"})
-    return rows
+    return sorted(rows, key=_distance, reverse=True)

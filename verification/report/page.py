@@ -2,14 +2,17 @@
 
 import base64
 import io
+import math
 from pathlib import Path
 
 import jinja2
 from PIL import Image
 
 from verification.protocol.machine import ROOT
-from verification.protocol.quantity import COVERAGE
-from verification.suite.judge import CORRECT, NOT_CONVERGING, SKIPPED
+from verification.report.headline import standard_text
+from verification.suite.judge import CODE_TO_CODE, SKIPPED, VALIDATED, WITHIN_GOAL
+from verification.suite.ladder import CONVERGING, FORMAL, NOISE_LIMITED, order_text
+from verification.suite.student import NORMAL
 
 TEMPLATES = ROOT / "reports" / "templates"
 
@@ -23,13 +26,22 @@ def _embedded(file: Path) -> str:
     return "data:image/webp;base64," + base64.b64encode(buffer.getvalue()).decode()
 
 
+TONES = {VALIDATED: "good", CONVERGING: "good", WITHIN_GOAL: "plain", CODE_TO_CODE: "plain", NOISE_LIMITED: "plain", SKIPPED: "skip"}
+
+
+def _tone(word: str) -> str:
+    """Class of a verdict, or of what levels show."""
+    return TONES.get(word, "bad")
+
+
 def _environment(escape: bool) -> jinja2.Environment:
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES), undefined=jinja2.StrictUndefined, autoescape=escape,
         trim_blocks=True, lstrip_blocks=True,
     )
-    environment.filters |= {"embedded": _embedded, "number": lambda value: f"{value:.4g}", "g": lambda value: f"{value:g}"}
-    environment.globals |= {"CORRECT": CORRECT, "NOT_CONVERGING": NOT_CONVERGING, "SKIPPED": SKIPPED, "COVERAGE": COVERAGE}
+    environment.filters |= {"embedded": _embedded, "number": lambda value: f"{value:.4g}", "g": lambda value: f"{value:g}",
+                            "order": order_text, "isnan": math.isnan, "standard": standard_text}
+    environment.globals |= {"SKIPPED": SKIPPED, "NORMAL": NORMAL, "FORMAL": FORMAL, "tone": _tone}
     return environment
 
 

@@ -13,6 +13,7 @@ from verification.protocol.errors import StoreError
 from verification.protocol.machine import ROOT
 from verification.report.chapters import chapters_of, families_of, rows_of
 from verification.report.figures import CaseFigures, case_figures, family_figures, shown_figures, suite_figures
+from verification.report.headline import Headline, changes_of_standards, headline
 from verification.report.history import changes, errors_of, read_history
 from verification.report.page import write_page, write_summary
 from verification.report.provenance import checksum, provenance, reference_checksums
@@ -21,7 +22,7 @@ from verification.store.export import export, import_into
 from verification.store.figures import Figures, benches_of
 from verification.store.laboratory import Laboratory
 from verification.store.store import Store, StoredRun
-from verification.suite.judge import CORRECT, SKIPPED
+from verification.suite.judge import SKIPPED
 from verification.suite.result import CaseResult, collect
 from verification.suite.stale import Stale, stale_of
 from verification.suite.table import table
@@ -173,6 +174,7 @@ def draw_report(laboratory: Laboratory, tier: str, page: Path, publish: bool) ->
         "tier": tier, "results": results, "figures": figures, "families": families, "chapters": chapters, "rows": rows, "suite": suite,
         "shown_pictures": shown_pictures, "shown": SHOWN, "steps": steps, "record": shown.record, "shown_made": shown.made,
         "ledger": _ledger(shown.record), "stored": stored, "benches": benches, "speed_charts": speed_charts, "absent": absent,
+        "headline": headline(results, absent, len(stale)), "standards": changes_of_standards(cases_of("full")),
         "stale": stale, "table": table(laboratory), "changes": changes(history, entry["errors"]), "history": history, "provenance": origin,
         "checksums": reference_checksums(), "took": str(timedelta(seconds=round(time.monotonic() - started))),
     }
@@ -193,10 +195,9 @@ def _tell(content: dict, page: Path) -> int:
     passes = not gone and all(result.passes for result in results) and not any(row["defect"] for row in content["ledger"])
     for result in results:
         print("\n".join(f"{result.case.name}: {line}" for line in result.lines))
-    verdicts = [outcome.verdict for result in results for outcome in result.outcomes]
-    skipped = f", {verdicts.count(SKIPPED)} SKIPPED" if SKIPPED in verdicts else ""
-    print(f"{verdicts.count(CORRECT)} of {len(verdicts)} observables CORRECT{skipped}; drawn in {content['took']}")
-    that_ran = " that was run" if skipped or content["absent"] else ""
+    counts: Headline = content["headline"]
+    print(f"{counts.text}; drawn in {content['took']}")
+    that_ran = " that was run" if counts.verdicts[SKIPPED] or content["absent"] else ""
     explained = sum(len(result.explained) for result in results)
     but = f" but {explained}, explained" if explained else ""
     print(f"report: {page / 'index.html'}: {f'everything{that_ran} holds{but}' if passes else 'SOMETHING DOES NOT HOLD'}")

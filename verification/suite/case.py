@@ -1,12 +1,43 @@
 """A case as the judge sees it. verification/suite/manifest.py reads it from its folder."""
 
 from dataclasses import dataclass, field
+from datetime import date
 from pathlib import Path
 
 from verification.bits.equivalence import Equivalence
 
 TIERS = ("quick", "full")
 REFINED = ("spacing", "step")
+
+
+@dataclass(frozen=True)
+class Standard:
+    """What an observable had to meet for a time."""
+
+    since: date
+    goal: float
+    order: tuple[float, float] | None = None
+    extrapolated: float | None = None
+    why: str = ""  # it was chosen so, where that is told
+
+    def is_looser_than(self, other: "Standard") -> bool:
+        """Whether anything that meets `other` might miss it in nothing, and more may meet this one."""
+        def looser(mine: float | None, others: float | None) -> bool:
+            return others is not None and (mine is None or mine > others)
+
+        band = other.order is not None and (self.order is None or self.order[0] < other.order[0] or self.order[1] > other.order[1])
+        return looser(self.goal, other.goal) or looser(self.extrapolated, other.extrapolated) or band
+
+
+@dataclass(frozen=True)
+class Retired:
+    """An observable that is judged no more."""
+
+    name: str
+    symbol: str
+    standard: Standard
+    until: date
+    why: str
 
 
 @dataclass(frozen=True)
@@ -22,13 +53,22 @@ class Observable:
     input: float = 0.0
     order: tuple[float, float] | None = None
     extrapolated: float | None = None  # goal of the value extrapolated over the levels
-    explained: str = ""  # why it misses its goal, found out and written down: WRONG all the same, and no reason to stop
+    earlier: tuple[Standard, ...] = ()  # the oldest first
+    since: date | None = None  # of goal and band
+    why: str = ""  # these
+    explained: str = ""  # why it misses its goal, found out and written down: FAILED all the same, and no reason to stop
     explained_goal: float = 0.0  # largest error, as `goal`, that the explanation covers
     live: str = ""  # quantity of the reference code that is run for this case
     published: str = ""  # table of reference/published
+    code_to_code: bool = False  # the reference is another code with the same law
     needs: tuple[str, ...] = ()  # capabilities beside those that the scene asks for
     skipped: str = ""  # why it is not judged: a reference that is not installed, or a code that cannot do it
     unusable: str = ""  # why the reference that there is cannot serve
+
+    @property
+    def standard(self) -> Standard | None:
+        """The present one."""
+        return None if self.since is None else Standard(self.since, self.goal, self.order, self.extrapolated, self.why)
 
     @property
     def against(self) -> str:
@@ -46,8 +86,9 @@ class Level:
 class Vary:
     source: str
     sets: tuple[tuple[str, ...], ...]
-    ratio: float | None
+    ratio: float | None  # None: another choice within a range, or another start
     order: float
+    seeds: bool = False  # the sets are other starts, of one distribution
 
 
 @dataclass(frozen=True)
@@ -58,6 +99,7 @@ class Live:
     problem: str
     quick: tuple[str, ...]
     full: tuple[str, ...]
+    same_law: bool = False  # as the solver: what it is held against shows programming, not physics
 
     def options(self, tier: str) -> dict[str, str]:
         return dict(text.split("=", 1) for text in (self.quick if tier == "quick" else self.full))
@@ -78,8 +120,9 @@ class Case:
     cost: float
     equations: tuple[str, ...] = ()
     refined: str = "spacing"
-    stalls: str = ""
+    remark: str = ""  # on what the levels show
     observables: tuple[Observable, ...] = ()
+    retired: tuple[Retired, ...] = ()
     levels: tuple[Level, ...] = ()
     vary: tuple[Vary, ...] = ()
     beside: tuple[Beside, ...] = ()

@@ -1,24 +1,38 @@
-"""Verdicts. CORRECT: against a reference. CONVERGING: over levels. UNCHANGED: bit by bit (equivalence.py).
+"""Verdicts on values, and what levels show. Equality of bits has its own: verification/bits/equivalence.py.
 
-The tolerance of CORRECT is worked out from uncertainties (ASME V&V 20): |S - D| <= k sqrt(u_num^2 + u_ref^2 + u_input^2)
-with k = 2, and capped by the goal of the manifest, so that a noisy run cannot widen its way to a pass. All u are standard
-uncertainties; 95 % bounds are halved. Where the reference is 0 the observable is itself the error (a norm): its tolerance
-is the goal. Where a manifest offers no source of u_num, the goal alone decides, and the line says so.
+A value is held against its reference by ASME V&V 20: u_val = sqrt(u_num^2 + u_ref^2 + u_input^2), all standard uncertainties, 95 %
+bounds halved, and k from Student's t where a source is the scatter of a few starts (student.py). With the goal of the manifest:
+
+VALIDATED      |E| <= k u_val <= goal
+WITHIN GOAL    |E| <= goal, but k u_val > goal, or no uncertainty is known: nothing contradicts, nothing is resolved
+FAILED         |E| > k u_val, or |E| > goal
+CODE-TO-CODE   |E| <= goal, the reference being another code with the same law: a check of programming, no validation
+INCONCLUSIVE   the value or the reference may not be used: forces out of balance, a reference code that failed
+SKIPPED        the reference or the capability is not there
+
+Where the reference is 0 the value is itself an error, a norm for instance. It need not lie within its own uncertainty, as no limit
+of it can be below 0: with |E| > k u_val it is WITHIN GOAL.
+
+What levels show is in ladder.py. DIVERGING fails whatever the error; a band that the manifest declares for the order must be met.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from verification.protocol.quantity import COVERAGE, Measured
 from verification.suite.case import Case, Observable, Vary
-from verification.suite.ladder import SAFETY, Convergence, converge, error_order, extrapolated
+from verification.suite.ladder import BAND, CONVERGING, DIVERGING, SAFETY, Convergence, converge, extrapolated, order_text
 from verification.suite.runner import Entry
+from verification.suite.student import coverage_of, factor_of
 
-CORRECT, WRONG, OPEN, SKIPPED = "CORRECT", "WRONG", "NOT ACCEPTED", "SKIPPED"
+VALIDATED, WITHIN_GOAL, INCONCLUSIVE, FAILED = "VALIDATED", "WITHIN GOAL", "INCONCLUSIVE", "FAILED"
+CODE_TO_CODE, SKIPPED = "CODE-TO-CODE", "SKIPPED"
+VERDICTS = (FAILED, INCONCLUSIVE, VALIDATED, WITHIN_GOAL, CODE_TO_CODE, SKIPPED)  # as they are listed
+GOOD = (VALIDATED, WITHIN_GOAL, CODE_TO_CODE, SKIPPED)  # nothing speaks against these
 NOT_MEASURED = Measured(math.nan, 0.0)  # of an observable that is beyond the code
-CONVERGING, NOT_CONVERGING, STALLED = "CONVERGING", "NOT CONVERGING", "STALLED"
 
 
 Entries = dict[tuple[str, ...], Entry]
@@ -30,11 +44,13 @@ class Outcome:
 
     observable: Observable
     measured: Measured
-    sources: dict[str, float] = field(default_factory=dict)  # standard uncertainties that make up u_num, absolute
+    sources: Mapping[str, float] = field(default_factory=dict)  # standard uncertainties that make up u_num, absolute
+    freedom: Mapping[str, int] = field(default_factory=dict)  # degrees of freedom of sources that are the scatter of a sample
     spacings: tuple[float, ...] = ()  # of the levels, coarse to fine; the spacing or the step
     levels: tuple[Measured, ...] = ()
+    seeds: Mapping[str, tuple[float, ...]] = field(default_factory=dict)  # source: every value of its sample
     convergence: Convergence | None = None
-    stalls: str = ""
+    remark: str = ""  # of the manifest, on what the levels show
 
     @property
     def scale(self) -> float:
@@ -53,19 +69,34 @@ class Outcome:
         return math.hypot(*self.sources.values()) / self.scale
 
     @property
+    def u_ref(self) -> float:
+        """Standard uncertainty of the reference, relative, as u_num is."""
+        return self.observable.uncertainty / self.scale
+
+    @property
+    def u_input(self) -> float:
+        return self.observable.input / self.scale
+
+    @property
     def uncertainty(self) -> float:
         """u_val, relative: numerical, of the reference and of the inputs together."""
-        return math.hypot(self.u_num, self.u_ref, self.observable.input / self.scale)
+        return math.hypot(self.u_num, self.u_ref, self.u_input)
 
     @property
-    def by_goal_alone(self) -> bool:
-        return self.observable.reference == 0 or set(self.sources) <= {"time"}
+    def coverage(self) -> float:
+        """k."""
+        known = [(u, self.freedom.get(source)) for source, u in self.sources.items()]
+        return coverage_of([*known, (self.observable.uncertainty, None), (self.observable.input, None)])
 
     @property
-    def tolerance(self) -> float:
-        if self.by_goal_alone:
-            return self.observable.goal
-        return min(self.observable.goal, COVERAGE * self.uncertainty)
+    def bound(self) -> float:
+        """k u_val, relative."""
+        return self.coverage * self.uncertainty
+
+    @property
+    def is_estimated(self) -> bool:
+        """Whether there is an estimate of the numerical error at all, beyond that of averages over time."""
+        return not set(self.sources) <= {"time"}
 
     @property
     def objection(self) -> str:
@@ -77,45 +108,47 @@ class Outcome:
         if self.observable.skipped:
             return SKIPPED
         if self.objection:
-            return OPEN
-        return CORRECT if abs(self.error) <= self.tolerance else WRONG
+            return INCONCLUSIVE
+        if not abs(self.error) <= self.observable.goal:
+            return FAILED
+        if self.observable.code_to_code:
+            return CODE_TO_CODE
+        return self._resolved
 
     @property
-    def order(self) -> float:
-        """Observed order: of the error where the reference is exact, of the differences of levels where it is not."""
-        if len(self.levels) < 3:
-            return math.nan
-        if self.observable.uncertainty == 0.0:
-            return error_order(list(self.spacings), [level.value - self.observable.reference for level in self.levels])
-        return self.convergence.order
+    def _resolved(self) -> str:
+        """Of an error within the goal."""
+        if self.error == 0.0 and self.observable.uncertainty == 0.0:
+            return VALIDATED
+        if not self.is_estimated or not self.bound <= self.observable.goal:
+            return WITHIN_GOAL
+        if abs(self.error) <= self.bound:
+            return VALIDATED
+        return WITHIN_GOAL if self.observable.reference == 0 else FAILED
 
     @property
-    def order_text(self) -> str:
-        return "none: not monotonic" if math.isnan(self.order) else f"{self.order:.2f}"
+    def band(self) -> tuple[float, float]:
+        return self.observable.order or BAND
 
     @property
-    def u_ref(self) -> float:
-        """Standard uncertainty of the reference, relative, as u_num is."""
-        return self.observable.uncertainty / self.scale
+    def state(self) -> str:
+        """What the levels show; empty where there are fewer than three."""
+        return self.convergence.state if self.convergence and self.verdict != SKIPPED else ""
 
     @property
-    def convergence_verdict(self) -> str:
-        """Empty where the manifest asks for none."""
-        if self.observable.order is None or self.verdict == SKIPPED:
-            return STALLED if self.stalls and len(self.levels) > 2 else ""
-        lowest, highest = self.observable.order
-        return CONVERGING if lowest <= self.order <= highest else NOT_CONVERGING
+    def converges_as_asked(self) -> bool:
+        return self.state != DIVERGING and (self.observable.order is None or self.state in ("", CONVERGING))
 
     @property
     def holds(self) -> bool:
         """Nothing speaks against it. What was skipped neither passes nor fails."""
-        return self.verdict in (CORRECT, SKIPPED) and self.convergence_verdict != NOT_CONVERGING
+        return self.verdict in GOOD and self.converges_as_asked
 
     @property
     def explained(self) -> str:
-        """Why it is WRONG, where the manifest knows, and by no more than that explains."""
-        known = self.verdict == WRONG and abs(self.error) <= self.observable.explained_goal
-        return self.observable.explained if known and self.convergence_verdict != NOT_CONVERGING else ""
+        """Why it FAILED, where the manifest knows, and by no more than that explains."""
+        known = not self.holds and self.verdict != INCONCLUSIVE and abs(self.error) <= self.observable.explained_goal
+        return self.observable.explained if known else ""
 
     @property
     def passes(self) -> bool:
@@ -130,40 +163,49 @@ class Outcome:
         return f"{100 * self.error:+.2f} %" if self.observable.reference else f"{self.error:.2g}"
 
     @property
+    def bound_text(self) -> str:
+        """Empty where no uncertainty is known."""
+        return self.in_words(self.bound) if self.is_estimated and self.verdict != SKIPPED else ""
+
+    @property
+    def state_text(self) -> str:
+        """With the order; empty where there are no three levels."""
+        if not self.state:
+            return ""
+        return f"{self.state}, observed order {order_text(self.convergence.order)} in [{self.band[0]:g}, {self.band[1]:g}]" \
+            if self.state == CONVERGING else f"{self.state}, observed order {order_text(self.convergence.order)}"
+
+    @property
     def reason(self) -> str:
-        """Of a verdict other than CORRECT."""
-        if self.verdict == OPEN:
+        """Of a verdict, in words."""
+        goal = f"goal {self.in_words(self.observable.goal)}"
+        if self.verdict == INCONCLUSIVE:
             return self.objection
         if self.verdict == SKIPPED:
             return self.observable.skipped
-        if self.verdict == CORRECT:
-            return ""
         if math.isnan(self.error):
             return "not a number"
         if abs(self.error) > self.observable.goal:
-            why = f"; explained: {self.explained}" if self.explained else ""
-            return f"beyond the goal {self.in_words(self.observable.goal)}{why}"
-        return f"within the goal, but not explained by its uncertainty (k u = {self.in_words(self.tolerance)})"
+            return f"beyond the {goal}"
+        if not self.is_estimated:
+            return f"{goal}, no estimate of its own error"
+        bound = f"k u = {self.bound_text}"
+        if self.verdict == FAILED:
+            return f"within the {goal}, but not explained by its uncertainty, {bound}"
+        return f"{bound}, {goal}"
 
     @property
     def line(self) -> str:
         observable, measured = self.observable, self.measured
         if self.verdict == SKIPPED:
             return f"{observable.symbol} = {measured.value:.6g} ({SKIPPED}: {self.reason})"
-        half_width = COVERAGE * self.u_num * self.scale if self.sources else measured.uncertainty
-        basis = f"goal {self.in_words(observable.goal)}"
-        if not self.by_goal_alone:
-            basis = f"k u = {self.in_words(COVERAGE * self.uncertainty)}, {basis}"
+        half_width = self.coverage * self.u_num * self.scale if self.sources else measured.uncertainty
         text = (
             f"{observable.symbol} = {measured.value:.6g} +- {half_width:.2g} (reference {observable.reference:g} +- "
-            f"{observable.uncertainty:g}, error {self.error_text}, {self.verdict}"
+            f"{observable.uncertainty:g}, error {self.error_text}, {self.verdict}: {self.reason}"
         )
-        text += f": {self.reason}" if self.reason else f" by {basis}"
-        if self.convergence_verdict:
-            text += f"; {self.convergence_verdict}, observed order {self.order_text}"
-            if observable.order:
-                text += f" in [{observable.order[0]:g}, {observable.order[1]:g}]"
-        return text + ")"
+        text += f"; {self.state_text}" if self.state else ""
+        return text + (f"; explained: {self.explained})" if self.explained else ")")
 
 
 def _height(case: Case, entry: Entry) -> float:
@@ -171,11 +213,24 @@ def _height(case: Case, entry: Entry) -> float:
     return entry.scene["fluid"]["spacing"] if case.refined == "spacing" else entry.record["time_step"]
 
 
-def _varied(vary: Vary, base: Measured, values: list[float]) -> float:
+def _varied(vary: Vary, base: float, values: list[float]) -> float:
     """Standard uncertainty from one source of error."""
-    if vary.ratio is None:
-        return float(np.std([base.value, *values], ddof=1))
-    return SAFETY * abs(values[0] - base.value) / (1 - vary.ratio**-vary.order) / COVERAGE
+    if vary.seeds:
+        return float(np.std([base, *values], ddof=1))
+    if vary.ratio is None:  # a choice that might have been another within this range
+        return (max(base, *values) - min(base, *values)) / 2 / math.sqrt(3)
+    return SAFETY * abs(values[0] - base) / (1 - vary.ratio**-vary.order) / COVERAGE
+
+
+def _converge(case: Case, outcome: Outcome) -> Outcome:
+    """With what its levels show."""
+    observable = outcome.observable
+    noise = max((math.sqrt(2) * factor_of(freedom) * outcome.sources[source] for source, freedom in outcome.freedom.items()), default=0.0)
+    explained = COVERAGE * math.hypot(*outcome.sources.values(), observable.uncertainty, observable.input)
+    found = converge(outcome.spacings, [level.value for level in outcome.levels], observable.reference, observable.uncertainty == 0.0,
+                     noise, explained, outcome.band)
+    source = "resolution" if case.refined == "spacing" else "step"
+    return replace(outcome, convergence=found, sources={source: found.estimate.bound / COVERAGE} | outcome.sources)
 
 
 def judge(case: Case, tier: str, entries: Entries) -> list[Outcome]:
@@ -187,18 +242,16 @@ def judge(case: Case, tier: str, entries: Entries) -> list[Outcome]:
 
         finished = [entries[level.overrides] for level in case.levels_of(tier)]
         levels = [of(level.overrides) for level in case.levels_of(tier)]
-        heights = [_height(case, one) for one in finished]
-        sources, convergence = {"time": levels[-1].uncertainty} if levels[-1].uncertainty else {}, None
-        if len(levels) > 1:
-            convergence = converge(heights, [level.value for level in levels])
-            sources["resolution" if case.refined == "spacing" else "step"] = convergence.gci / COVERAGE
-        base = case.quick_finest().overrides
+        sources = {"time": levels[-1].uncertainty} if levels[-1].uncertainty else {}
+        base, freedom, seeds = case.quick_finest().overrides, {}, {}
         for vary in case.vary:
             values = [of(base + chosen).value for chosen in vary.sets]
-            sources[vary.source] = _varied(vary, of(base), values)
-        outcomes.append(
-            Outcome(observable, levels[-1], sources, tuple(heights), tuple(levels), convergence, case.stalls)
-        )
+            sources[vary.source] = _varied(vary, of(base).value, values)
+            if vary.seeds:
+                freedom[vary.source], seeds[vary.source] = len(values), (of(base).value, *values)
+        outcome = Outcome(observable, levels[-1], sources, freedom, tuple(_height(case, one) for one in finished), tuple(levels), seeds,
+                          remark=case.remark)
+        outcomes.append(_converge(case, outcome) if len(levels) > 1 else outcome)
         if observable.extrapolated is not None and len(levels) > 2:
             outcomes.append(_at_zero(outcomes[-1]))
     return outcomes
@@ -206,12 +259,13 @@ def judge(case: Case, tier: str, entries: Entries) -> list[Outcome]:
 
 def _at_zero(finest: Outcome) -> Outcome:
     """The value extrapolated over the levels as an outcome of its own, with its own goal."""
-    found = extrapolated(list(finest.spacings), [level.value for level in finest.levels])
+    found = extrapolated(finest.spacings, [level.value for level in finest.levels])
     objection = "; ".join(dict.fromkeys(filter(None, (level.objection for level in finest.levels[-found.used :]))))
     observable = replace(finest.observable, symbol=f"{finest.observable.symbol}, dx to 0",
                          goal=finest.observable.extrapolated, order=None, extrapolated=None)
     sources = {name: value for name, value in finest.sources.items() if name != "resolution"}
-    return Outcome(observable, Measured(found.value, 0.0, objection), sources | {f"extrapolation ({found.how})": found.uncertainty})
+    return Outcome(observable, Measured(found.value, 0.0, objection), sources | {f"extrapolation ({found.how})": found.uncertainty},
+                   finest.freedom)
 
 
 def beside(case: Case, entries: Entries) -> list[tuple[str, Outcome]]:

@@ -1,68 +1,223 @@
-"""Grid convergence: observed order, Richardson's value and the grid convergence index.
+"""What a sequence of levels shows: whether it converges, to what, and how far the finest level may be from there.
 
-Celik, Ghia, Roache, Freitas, Coleman and Raad, J. Fluids Eng. 130, 2008, 078001; Roache, J. Fluids Eng. 116, 1994, 405-413.
-Eca and Hoekstra, J. Comput. Phys. 262, 2014, 104-130. Levels run from coarse to fine; h is what is refined, the spacing or the step.
+Levels run from coarse to fine; h is what is refined, the spacing or the step. The method is of second order, FORMAL: no estimate
+takes a higher one, and an observed order far above it only says that the levels are not yet where theory holds.
+
+Eca and Hoekstra, J. Comput. Phys. 262, 2014, 104-130, over four levels or more; over three, Celik, Ghia, Roache, Freitas, Coleman
+and Raad, J. Fluids Eng. 130, 2008, 078001, with their limits on the order; over two, Roache, J. Fluids Eng. 116, 1994, 405-413.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-SAFETY, SAFETY_WITHOUT_ORDER = 1.25, 3.0  # Roache's factors, with three levels that converge and without
-LOWEST_ORDER, HIGHEST_ORDER = 0.5, 4.0  # an observed order is not trusted beyond these in an estimate of an error
+FORMAL = 2.0
+LOWEST_ORDER, HIGHEST_ORDER = 0.5, 2.1  # an observed order is trusted between these
+BAND = (0.5, 2.5)  # where the observed order must lie if a manifest says nothing narrower, and may not be declared beyond
+SAFETY, SAFETY_WITHOUT_ORDER = 1.25, 3.0
+CONVERGING, NOISE_LIMITED, DIVERGING, NOT_CONVERGING = "CONVERGING", "NOISE-LIMITED", "DIVERGING", "NOT CONVERGING"
 
 
 @dataclass(frozen=True)
-class Convergence:
+class Estimate:
     """Of one observable over its levels."""
 
-    order: float  # observed, of the three finest levels; NaN where they do not converge monotonically
-    richardson: float  # value extrapolated to h = 0; NaN where the order is
-    gci: float  # 95 % bound of the error of the finest level, absolute
-
-    @property
-    def monotonic(self) -> bool:
-        return not math.isnan(self.order)
+    bound: float  # 95 %, of the error of the finest level, absolute
+    order: float = math.nan  # observed, not clamped; NaN where there is none
+    limit: float = math.nan  # at h = 0; NaN where the order is not to be trusted
+    how: str = ""
 
 
-def observed_order(h: list[float], values: list[float]) -> float:
-    """Of the three finest levels; NaN where the values do not approach a limit monotonically."""
+def is_trusted(order: float) -> bool:
+    return LOWEST_ORDER <= order <= HIGHEST_ORDER
+
+
+def order_text(order: float) -> str:
+    """For people, who are shown no order that nobody believes."""
+    if math.isnan(order):
+        return "none"
+    if order < 0:
+        return "below 0"
+    return f"above {BAND[1]:g}" if order > BAND[1] else f"{order:.2f}"
+
+
+def observed_order(h: Sequence[float], values: Sequence[float]) -> float:
+    """Of the three finest levels: p with values = limit + a h^p, below 0 where the differences grow. NaN where the values swing, or
+    do not change."""
     coarse, medium, fine = values[-3:]
     r21, r32 = h[-2] / h[-1], h[-3] / h[-2]
     e21, e32 = medium - fine, coarse - medium
-    if e21 == 0.0 or e32 == 0.0 or e32 / e21 <= 0.0:
+    if not math.isfinite(e21 * e32) or e21 == 0.0 or e32 / e21 <= 0.0:
         return math.nan
-    order = abs(math.log(e32 / e21)) / math.log(r21)
-    for _ in range(100):  # fixed point for ratios that differ; exact at once where they are equal
-        ratio = (r21**order - 1) / (r32**order - 1) if order > 0 else 1.0
-        following = math.log(e32 / e21 * ratio) / math.log(r21)
-        if abs(following - order) < 1e-10:
-            break
-        order = following
-    return order if order > 0 else math.nan
+
+    def excess(order: float) -> float:
+        """Grows with the order from below 0 to above it."""
+        if abs(order) < 1e-9:
+            return math.log(r32) / math.log(r21) - e32 / e21
+        return r21**order * (r32**order - 1) / (r21**order - 1) - e32 / e21
+
+    low, high = -50.0, 50.0
+    if excess(low) > 0 or excess(high) < 0:
+        return low if excess(low) > 0 else high
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if excess(middle) < 0 else (low, middle)
+    return 0.5 * (low + high)
 
 
-def error_order(h: list[float], errors: list[float]) -> float:
+def error_order(h: Sequence[float], errors: Sequence[float]) -> float:
     """Slope of log |error| over log h, by least squares over all levels: the order where the exact value is known. NaN where an
-    error is no number."""
+    error is no number, or where errors have both signs and fall through 0."""
     if not all(map(math.isfinite, errors)):
         return math.nan
     if min(abs(error) for error in errors) == 0.0:
         return math.inf
+    if min(errors) < 0 < max(errors):
+        return math.nan
     slope, _ = np.polyfit(np.log(h), np.log(np.abs(errors)), 1)
     return float(slope)
 
 
-def converge(h: list[float], values: list[float]) -> Convergence:
-    """At least two levels. Without an observed order the index takes first order and the larger factor of safety."""
-    ratio, change = h[-2] / h[-1], abs(values[-2] - values[-1])
-    order = observed_order(h, values) if len(values) > 2 else math.nan
-    if math.isnan(order):
-        return Convergence(order, math.nan, SAFETY_WITHOUT_ORDER * change / (ratio - 1))
-    used = min(max(order, LOWEST_ORDER), HIGHEST_ORDER)
-    richardson = values[-1] + (values[-1] - values[-2]) / (ratio**order - 1)
-    return Convergence(order, richardson, SAFETY * change / (ratio**used - 1))
+# Least squares.
+
+
+@dataclass(frozen=True)
+class Fit:
+    """values = limit + sum of a_k h^k over the powers."""
+
+    limit: float
+    deviation: float  # standard, of the values from the fit
+    correction: float  # value of the fit on the finest level, less the limit
+    powers: tuple[float, ...]
+    error: float  # standard, of the limit
+
+
+def fitted(h: np.ndarray, values: np.ndarray, powers: tuple[float, ...], weighted: bool = False, free: int | None = None) -> Fit:
+    """`free` is the number of what is fitted, where that is more than the factors. Weights go with 1 / h."""
+    weight = (1 / h) / np.sum(1 / h) * len(h) if weighted else np.ones_like(h)
+    basis = np.column_stack([np.ones_like(h), *(h**power for power in powers)])
+    root = np.sqrt(weight)[:, None]
+    factors, *_ = np.linalg.lstsq(root * basis, root[:, 0] * values, rcond=None)
+    left = values - basis @ factors
+    variance = float(np.sum(weight * left**2)) / max(1, len(h) - (free or basis.shape[1]))
+    covariance = variance * np.linalg.pinv((root * basis).T @ (root * basis))
+    return Fit(float(factors[0]), math.sqrt(variance), float(basis[-1] @ factors - factors[0]), powers, math.sqrt(max(0.0, covariance[0, 0])))
+
+
+def _best(fits: list[Fit]) -> Fit:
+    return min(fits, key=lambda fit: fit.deviation)
+
+
+def _power_law(h: np.ndarray, values: np.ndarray, weighted: bool) -> Fit:
+    """limit + a h^p with the p of the least deviation."""
+    def deviation(order: float) -> float:
+        return fitted(h, values, (order,), weighted, 3).deviation
+
+    orders = np.linspace(-2.0, 8.0, 201)
+    orders = orders[np.abs(orders) > 1e-6]
+    at = int(np.argmin([deviation(order) for order in orders]))
+    low, high = orders[max(0, at - 1)], orders[min(len(orders) - 1, at + 1)]
+    golden = (math.sqrt(5) - 1) / 2
+    for _ in range(60):
+        left, right = high - golden * (high - low), low + golden * (high - low)
+        low, high = (low, right) if deviation(left) < deviation(right) else (left, high)
+    return fitted(h, values, (0.5 * (low + high),), weighted, 3)
+
+
+def _least_squares(h: np.ndarray, values: np.ndarray) -> Estimate:
+    """Four levels or more."""
+    free = _best([_power_law(h, values, weighted) for weighted in (False, True)])
+    order = free.powers[0]
+    chosen = free
+    if order > FORMAL:
+        chosen = _best([fitted(h, values, powers, weighted) for powers in ((1.0,), (2.0,)) for weighted in (False, True)])
+    elif order < LOWEST_ORDER:
+        chosen = _best([fitted(h, values, powers, weighted) for powers in ((1.0,), (2.0,), (1.0, 2.0)) for weighted in (False, True)])
+    range_of_data = float(np.ptp(values)) / (len(h) - 1)
+    trusted = is_trusted(order)
+    safety = SAFETY if trusted and chosen.deviation < range_of_data else SAFETY_WITHOUT_ORDER
+    off = abs(float(values[-1]) - chosen.limit - chosen.correction)
+    if chosen.deviation < range_of_data or range_of_data == 0.0:
+        bound = safety * abs(chosen.correction) + chosen.deviation + off
+    else:
+        bound = safety * chosen.deviation / range_of_data * (abs(chosen.correction) + chosen.deviation + off)
+    return Estimate(bound, order, chosen.limit if trusted else math.nan, "least squares")
+
+
+def estimate(h: Sequence[float], values: Sequence[float]) -> Estimate:
+    """At least two levels."""
+    if not all(map(math.isfinite, values)):
+        return Estimate(math.nan, how="no number on a level")
+    ratio, change = h[-2] / h[-1], values[-1] - values[-2]
+    if len(values) < 3:
+        return Estimate(SAFETY_WITHOUT_ORDER * abs(change) / (ratio - 1), how="two levels")
+    if max(values) == min(values):
+        return Estimate(0.0, math.nan, values[-1], "no change over the levels")
+    if len(values) > 3:
+        return _least_squares(np.array(h, dtype=float), np.array(values, dtype=float))
+    order = observed_order(h, values)
+    if is_trusted(order):
+        step = change / (ratio ** min(order, FORMAL) - 1)
+        return Estimate(SAFETY * abs(step), order, values[-1] + step, "three levels")
+    if order > HIGHEST_ORDER:
+        return Estimate(SAFETY_WITHOUT_ORDER * abs(change) / (ratio**FORMAL - 1), order, how="three levels")
+    return Estimate(SAFETY_WITHOUT_ORDER * max(max(values) - min(values), abs(change) / (ratio - 1)), order, how="three levels")
+
+
+# What the levels show.
+
+
+def _grows(h: Sequence[float], values: Sequence[float], noise: float) -> bool:
+    """Each difference, for its step in h, is larger than the one before, by more than noise explains."""
+    changes = np.diff(values)
+    if np.max(np.abs(changes)) <= noise:
+        return False
+    for k in range(2, len(values)):
+        order = observed_order(h[: k + 1], values[: k + 1])
+        swings = math.isnan(order) and changes[k - 1] * changes[k - 2] < 0 and abs(changes[k - 1]) > abs(changes[k - 2]) + noise
+        if not (swings or order <= 0):
+            return False
+    return True
+
+
+def _leaves(errors: Sequence[float], explained: float) -> bool:
+    """Each level is farther from the reference, in all by more than is explained by what is not refined."""
+    away = np.abs(errors)
+    return bool(np.all(np.diff(away) > 0)) and away[-1] - away[0] > explained
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """What the levels show, one of the four words above, and the estimate of their error."""
+
+    state: str  # empty below three levels
+    order: float  # of the errors where the reference is exact and they have one sign, else of the differences of levels
+    estimate: Estimate
+
+
+def converge(h: Sequence[float], values: Sequence[float], reference: float, exact: bool, noise: float = 0.0, explained: float = 0.0,
+             band: tuple[float, float] = BAND) -> Convergence:
+    """At least two levels. `noise` is by how much two of equal levels may differ, from several starts; `explained` is how far from the
+    reference a limit may be by all that is not refined: the reference itself, the step, the sound speed. Both 95 %, absolute."""
+    found = estimate(h, values)
+    if len(values) < 3:
+        return Convergence("", math.nan, found)
+    errors = [value - reference for value in values]
+    through_zero = min(errors) < 0 < max(errors)  # then their size tells no order
+    order = error_order(h, errors) if exact and not through_zero else found.order
+    if not all(map(math.isfinite, errors)):
+        return Convergence(NOT_CONVERGING, math.nan, found)
+    if not any(errors):
+        return Convergence(CONVERGING, math.nan, found)
+    if _leaves(errors, max(noise, explained)) or _grows(h, values, noise):
+        return Convergence(DIVERGING, order, found)
+    if band[0] <= order <= band[1]:
+        return Convergence(CONVERGING, order, found)
+    if 0 < abs(values[-1] - values[-2]) <= noise:
+        return Convergence(NOISE_LIMITED, order, found)
+    return Convergence(NOT_CONVERGING, order, found)
 
 
 @dataclass(frozen=True)
@@ -75,27 +230,18 @@ class Extrapolated:
     used: int  # of the levels, the finest
 
 
-def _fitted(h: np.ndarray, values: np.ndarray, order: int) -> tuple[float, float]:
-    """(a, its standard error) of values = a + b h^order, by least squares."""
-    basis = np.column_stack([np.ones_like(h), h**order])
-    coefficients, *_ = np.linalg.lstsq(basis, values, rcond=None)
-    variance = np.sum((values - basis @ coefficients) ** 2) / (len(h) - 2)
-    return float(coefficients[0]), float(np.sqrt(variance * np.linalg.inv(basis.T @ basis)[0, 0]))
-
-
-def extrapolated(h: list[float], values: list[float]) -> Extrapolated:
-    """At least three levels. Richardson's value where they converge with an order that can be trusted; else, as scattered
-    levels have none, a + b h or a + b h^2, whichever fits all of them better. NaN where a value is no number."""
+def extrapolated(h: Sequence[float], values: Sequence[float]) -> Extrapolated:
+    """At least three levels. The limit of the estimate where its order can be trusted; else, as scattered levels have none,
+    a + b h or a + b h^2, whichever fits all of them better. NaN where a value is no number."""
     if not all(map(math.isfinite, values)):
         return Extrapolated(math.nan, 0.0, "no number on a level", len(values))
-    found = converge(h, values)
-    if LOWEST_ORDER <= found.order <= HIGHEST_ORDER:
-        correction = abs(found.richardson - values[-1])
-        second = values[-1] + (values[-1] - values[-2]) / ((h[-2] / h[-1]) ** 2 - 1)
-        spread = max((SAFETY - 1) * correction, abs(found.richardson - second))
-        return Extrapolated(found.richardson, spread / 2, f"Richardson, order {found.order:.2f}", 3)
-    fits = {order: _fitted(np.array(h), np.array(values), order) for order in (1, 2)}
-    best = min(fits, key=lambda order: fits[order][1])
-    value, error = fits[best]
-    other = fits[3 - best][0]
-    return Extrapolated(value, math.hypot(error, (value - other) / 2), f"least squares, order {best}", len(values))
+    found = estimate(h, values)
+    if is_trusted(found.order):
+        correction = abs(found.limit - values[-1])
+        second = values[-1] + (values[-1] - values[-2]) / ((h[-2] / h[-1]) ** FORMAL - 1)
+        spread = max((SAFETY - 1) * correction, abs(found.limit - second))
+        return Extrapolated(found.limit, spread / 2, f"{found.how}, order {found.order:.2f}", 3 if len(values) == 3 else len(values))
+    fits = {order: fitted(np.array(h), np.array(values), (float(order),)) for order in (1, 2)}
+    best = min(fits, key=lambda order: fits[order].error)
+    return Extrapolated(fits[best].limit, math.hypot(fits[best].error, (fits[best].limit - fits[3 - best].limit) / 2),
+                        f"least squares, order {best}", len(values))

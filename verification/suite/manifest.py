@@ -6,7 +6,7 @@
     tier = "quick"                  # or "full"
     cost = 20                       # core-seconds of the quick tier, about
     refined = "spacing"             # or "step": what gets finer from level to level
-    stalls = "why the error stops falling"  # only where an observable has no band for its order; may be left out
+    remark = "why the error stops falling"  # on what the levels show; may be left out
 
     [case.parameters]               # what a point, a level or --set may choose: a number, a text or a list each. May be left out
     phi = 0.2                       # with the value that the scene as it stands has
@@ -22,13 +22,14 @@
     set = ["phi=0.1", "run.duration=4"]  # KEY=VALUE, before those of the level: a parameter, or a key of the scene, which wins
     tier = "full"                   # that of the case if left out
     cost = 20                       # likewise
-    stalls = "why the error stops falling"  # of this point, whose observables then have no band for their order
+    unbanded = { since = 2026-11-22, why = "why" }  # here no band need be met, from that day on; may be left out
 
     [case.live]                     # a reference code, run after the code that is judged: an adapter of verification/codes
     code = "openfoam"
     problem = "drag"
     quick = ["levels=16,32"]        # options of it in that tier
     full = ["levels=16,32,64"]
+    same_law = false                # true: the code has the solver's law, and agreement is CODE-TO-CODE; false if left out
 
     [[case.observable]]
     name = "drag"                   # a function of measure.py in the folder of the case, or of verification/measures/observables.py
@@ -38,14 +39,28 @@
     # or, in place of reference, uncertainty and source:
     live = "drag"                   # a quantity of the result of [case.live]
     published = "square_array_stokes"  # a table of reference/published, looked up for the scene
-    explained = "why it misses its goal"  # of a miss whose cause is known: it stays WRONG, is shown with the cause, and fails no test
+    explained = "why it misses its goal"  # of a miss whose cause is known: it stays FAILED, is shown with the cause, and fails no test
     explained_goal = 0.05           # largest error, as goal, that this explains; comes with it
     needs = ["force-on-body"]       # capabilities of a code beside those that the scene asks for; may be left out
     input = 0.0                     # standard uncertainty from the inputs, absolute; 0 if left out
     source = "Sangani and Acrivos 1982, table 1"
     goal = 0.03                     # largest relative error that can count as correct; absolute where the reference is 0
-    order = [1.5, 2.5]              # band of the observed order; may be left out
+    order = [1.5, 2.5]              # band of the observed order, by theory, within [0.5, 2.5]; may be left out
     extrapolated = 0.01             # goal of the value extrapolated over three levels or more, judged as well; may be left out
+    since = 2026-11-22              # the day from which on goal, band and extrapolated are these
+    why = "why they are these"      # must be there if what came before asked for more
+
+    [[case.observable.earlier]]     # what they were before, the oldest first; may be left out
+    since = 2026-11-20
+    goal = 0.02                     # order, extrapolated and why likewise
+
+    [[case.retired]]                # an observable that is judged no more; may be left out
+    name = "drag"
+    symbol = "F/(mu U)"
+    since = 2026-11-20              # of its last goal
+    goal = 0.02                     # order and extrapolated likewise
+    until = 2026-11-22
+    why = "why it was left out"
 
     [[case.level]]                  # from coarse to fine; `set = []` is the scene as it stands
     set = ["R_over_dx=12"]
@@ -55,7 +70,9 @@
     source = "step"                 # step, Mach, disorder, ...
     sets = [["run.step_factor=0.5"]]
     ratio = 2                       # by which the source is refined, and the order of its error: the error is estimated
-    order = 1                       # as the change / (1 - ratio^-order). Without ratio: several seeds, their scatter counts
+    order = 1                       # as the change / (1 - ratio^-order). Without ratio: other choices, whose range counts
+    # or, in place of sets: other starts, four or more, whose scatter counts, with that of the finest quick level itself
+    seeds = [["seed=2"], ["seed=3"], ["seed=4"], ["seed=5"]]
 
     [[case.beside]]                 # measured and reported, without a verdict
     label = "classic"
@@ -69,7 +86,9 @@ measure.py beside it exports one object MEASURES, see verification/measures/meas
 import math
 import os
 import tomllib
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from datetime import date, datetime
+from itertools import pairwise
 from pathlib import Path
 
 from verification.bits.equivalence import read_equivalence
@@ -77,7 +96,8 @@ from verification.codes.code import all_codes
 from verification.protocol.capability import CAPABILITIES
 from verification.protocol.errors import CaseError
 from verification.protocol.machine import ROOT
-from verification.suite.case import REFINED, TIERS, Beside, Case, Level, Live, Observable, Vary
+from verification.suite.case import REFINED, TIERS, Beside, Case, Level, Live, Observable, Retired, Standard, Vary
+from verification.suite.ladder import BAND
 from verification.suite.parameters import derived, read_parameters, scene_of, split
 
 
@@ -143,24 +163,72 @@ def _needs(table: dict, where: str) -> tuple[str, ...]:
     return words
 
 
-def _observable(table: dict, where: str) -> Observable:
-    kinds = {"name": str, "symbol": str, "goal": NUMBER}
-    _only(table, (*kinds, *REFERENCES, "uncertainty", "source", "input", "order", "extrapolated", "needs", "explained", "explained_goal"), where)
+STANDARD = ("since", "goal", "order", "extrapolated", "why")
+
+
+def _day(table: dict, key: str, where: str) -> date:
+    if key not in table:
+        raise CaseError(f"{where}.{key}: missing; add the day, such as 2026-11-22, without quotes")
+    if not isinstance(table[key], date) or isinstance(table[key], datetime):
+        raise CaseError(f"{where}.{key} = {table[key]!r}: write a day, such as 2026-11-22, without quotes")
+    return table[key]
+
+
+def _standard(table: dict, where: str) -> Standard:
     band = table.get("order")
     if band is not None and not (isinstance(band, list) and len(band) == 2 and band[0] < band[1]):
         raise CaseError(f"{where}.order = {band!r}: write the band as [lowest, highest]")
+    found = Standard(_day(table, "since", where), float(_entry(table, "goal", NUMBER, where)), tuple(band) if band else None,
+                     float(_entry(table, "extrapolated", NUMBER, where)) if "extrapolated" in table else None,
+                     " ".join(_entry(table, "why", str, where, "").split()))
+    if min(found.goal, found.extrapolated or 0.0) < 0:
+        raise CaseError(f"{where}: goal and extrapolated must not be negative")
+    return found
+
+
+def _earlier(table: dict, now: Standard, where: str) -> tuple[Standard, ...]:
+    """Throws CaseError where days are out of order, or where less is asked for without a reason."""
+    found = []
+    for i, entry in enumerate(table.get("earlier", [])):
+        _only(entry, STANDARD, f"{where}.earlier[{i}]")
+        found.append(_standard(entry, f"{where}.earlier[{i}]"))
+    for i, (before, after) in enumerate(pairwise([*found, now])):
+        if after.since < before.since:
+            raise CaseError(f"{where}.earlier[{i}].since = {before.since}: later than what came after, {after.since}; put the oldest first")
+        if after.is_looser_than(before) and not after.why:
+            at = f"{where}.earlier[{i + 1}]" if i + 1 < len(found) else where
+            raise CaseError(f"{at}.why: missing; it asks for less than what was there before, say why")
+    return tuple(found)
+
+
+def _retired(table: dict, where: str) -> Retired:
+    _only(table, (*STANDARD, "name", "symbol", "until"), where)
+    name, symbol, why = (" ".join(_entry(table, key, str, where).split()) for key in ("name", "symbol", "why"))
+    return Retired(name, symbol, replace(_standard(table, where), why=""), _day(table, "until", where), why)
+
+
+def _observable(table: dict, where: str) -> Observable:
+    kinds = {"name": str, "symbol": str}
+    _only(table, (*kinds, *REFERENCES, *STANDARD, "earlier", "uncertainty", "source", "input", "needs", "explained", "explained_goal"), where)
+    standard = _standard(table, where)
+    if standard.order and not (BAND[0] <= standard.order[0] and standard.order[1] <= BAND[1]):
+        raise CaseError(f"{where}.order = {table['order']!r}: beyond {list(BAND)}, what theory can give of a method of second order")
     observable = Observable(
         **{key: _entry(table, key, kind, where) for key, kind in kinds.items()},
         **_reference(table, where),
+        goal=standard.goal,
+        since=standard.since,
+        why=standard.why,
+        earlier=_earlier(table, standard, where),
         needs=_needs(table, where),
         explained=" ".join(_entry(table, "explained", str, where, "").split()),
         explained_goal=_entry(table, "explained_goal", NUMBER, where, 0.0 if "explained" not in table else None),
         input=_entry(table, "input", NUMBER, where, 0.0),
-        order=tuple(band) if band else None,
-        extrapolated=_entry(table, "extrapolated", NUMBER, where) if "extrapolated" in table else None,
+        order=standard.order,
+        extrapolated=standard.extrapolated,
     )
-    if min(observable.goal, observable.input, observable.extrapolated or 0.0) < 0 or observable.uncertainty < 0:
-        raise CaseError(f"{where}: goal, extrapolated, uncertainty and input must not be negative")
+    if observable.input < 0 or observable.uncertainty < 0:
+        raise CaseError(f"{where}: uncertainty and input must not be negative")
     return observable
 
 
@@ -169,18 +237,32 @@ def _level(table: dict, where: str) -> Level:
     return Level(_texts(table, "set", where), _choice(table, "tier", TIERS, where, "quick"))
 
 
-def _vary(table: dict, where: str) -> Vary:
-    _only(table, ("source", "sets", "ratio", "order"), where)
-    sets = _entry(table, "sets", list, where)
+FEWEST_STARTS = 5
+
+
+def _sets(table: dict, key: str, where: str) -> tuple[tuple[str, ...], ...]:
+    sets = _entry(table, key, list, where)
     if not sets or not all(isinstance(entry, list) for entry in sets):
-        raise CaseError(f"{where}.sets = {sets!r}: write a list of lists of overrides")
-    ratio = table.get("ratio")
+        raise CaseError(f"{where}.{key} = {sets!r}: write a list of lists of overrides")
+    return tuple(tuple(entry) for entry in sets)
+
+
+def _vary(table: dict, where: str) -> Vary:
+    _only(table, ("source", "sets", "seeds", "ratio", "order"), where)
+    source = _entry(table, "source", str, where)
+    if "seeds" in table:
+        if more := [key for key in ("sets", "ratio", "order") if key in table]:
+            raise CaseError(f"{where}.{more[0]}: does not go with seeds; remove one of them")
+        seeds = _sets(table, "seeds", where)
+        if len(seeds) + 1 < FEWEST_STARTS:
+            raise CaseError(f"{where}.seeds: {len(seeds)} of them, {len(seeds) + 1} starts in all; {FEWEST_STARTS} are the fewest that count")
+        return Vary(source, seeds, None, 1.0, seeds=True)
+    sets, ratio = _sets(table, "sets", where), table.get("ratio")
     if ratio is not None and (len(sets) != 1 or not isinstance(ratio, NUMBER) or ratio <= 1):
         raise CaseError(f"{where}.ratio = {ratio!r}: needs one entry in sets, and must be above 1")
     if ratio is None and len(sets) < 2:
-        raise CaseError(f"{where}.sets: one entry without a ratio says nothing; give the ratio, or several seeds")
-    order = _entry(table, "order", NUMBER, where, 1.0)
-    return Vary(_entry(table, "source", str, where), tuple(tuple(entry) for entry in sets), ratio, float(order))
+        raise CaseError(f"{where}.sets: one entry without a ratio says nothing; give the ratio, or several choices")
+    return Vary(source, sets, ratio, float(_entry(table, "order", NUMBER, where, 1.0)))
 
 
 def _beside(table: dict, where: str) -> Beside:
@@ -188,14 +270,42 @@ def _beside(table: dict, where: str) -> Beside:
     return Beside(_entry(table, "label", str, where), _texts(table, "set", where))
 
 
+def _flag(table: dict, key: str, where: str) -> bool:
+    if not isinstance(table.get(key, False), bool):
+        raise CaseError(f"{where}.{key} = {table[key]!r}: write true or false")
+    return table.get(key, False)
+
+
 def _live(table: dict, where: str) -> Live:
-    _only(table, ("code", "problem", "quick", "full"), where)
+    _only(table, ("code", "problem", "quick", "full", "same_law"), where)
     for key in ("quick", "full"):
         for text in _texts(table, key, where):
             if "=" not in text:
                 raise CaseError(f"{where}.{key}: {text!r}: write KEY=VALUE")
     return Live(_choice(table, "code", tuple(all_codes()), where), _entry(table, "problem", str, where), _texts(table, "quick", where),
-                _texts(table, "full", where))
+                _texts(table, "full", where), _flag(table, "same_law", where))
+
+
+@dataclass(frozen=True)
+class _Unbanded:
+    since: date
+    why: str
+
+
+def _unbanded(table: dict, where: str) -> _Unbanded | None:
+    if "unbanded" not in table:
+        return None
+    entry, at = _entry(table, "unbanded", dict, where), f"{where}.unbanded"
+    _only(entry, ("since", "why"), at)
+    return _Unbanded(_day(entry, "since", at), " ".join(_entry(entry, "why", str, at).split()))
+
+
+def _without_band(observable: Observable, unbanded: _Unbanded) -> Observable:
+    """As its manifest has it, and from a day on without a band."""
+    if observable.order is None:
+        return observable
+    days = [standard for standard in (*observable.earlier, observable.standard) if standard.since <= unbanded.since] or [observable.standard]
+    return replace(observable, order=None, earlier=tuple(days), since=unbanded.since, why=unbanded.why)
 
 
 def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
@@ -203,9 +313,9 @@ def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
     found = []
     for i, table in enumerate(tables):
         at = f"{where}.point[{i}]"
-        _only(table, ("name", "set", "tier", "cost", "stalls"), at)
+        _only(table, ("name", "set", "tier", "cost", "unbanded"), at)
         base = _texts(table, "set", at)
-        stalls = " ".join(_entry(table, "stalls", str, at, "").split())
+        unbanded = _unbanded(table, at)
         try:
             scene = derived(case.plain, case.parameters, case.formulas, base, f"{case.file}: case")
         except CaseError:
@@ -216,8 +326,8 @@ def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
             case, name=f"{case.name}.{_entry(table, 'name', str, at)}", base=base, scene=scene,
             tier=_choice(table, "tier", TIERS, at, case.tier), cost=_cost(table, at, case.cost),
             levels=tuple(replace(level, overrides=base + level.overrides) for level in case.levels),
-            stalls=stalls or case.stalls,
-            observables=tuple(replace(one, order=None) for one in case.observables) if stalls else case.observables,
+            remark=unbanded.why if unbanded else case.remark,
+            observables=tuple(_without_band(one, unbanded) for one in case.observables) if unbanded else case.observables,
         ))
     if len({point.name for point in found}) < len(found):
         raise CaseError(f"{where}.point: two points have the same name; rename one")
@@ -244,6 +354,11 @@ def _all_of(table: dict, key: str, read, where: str) -> tuple:
     return tuple(read(entry, f"{where}.{key}[{i}]") for i, entry in enumerate(table.get(key, [])))
 
 
+def _of_one_law(observables: tuple[Observable, ...], live: Live | None) -> tuple[Observable, ...]:
+    """Those held against a code that has the solver's law are marked as such."""
+    return tuple(replace(one, code_to_code=bool(one.live and live and live.same_law)) for one in observables)
+
+
 def read_cases(file: Path) -> list[Case]:
     """The points of a case, or the case itself where it has none. Throws CaseError."""
     try:
@@ -254,8 +369,8 @@ def read_cases(file: Path) -> list[Case]:
     if table is None:
         raise CaseError(f"{file}: case: missing; add a table [case]")
     where = f"{file}: case"
-    lists = {"observable": _observable, "level": _level, "vary": _vary, "beside": _beside}
-    _only(table, ("purpose", "equations", "tier", "cost", "refined", "stalls", "equivalence", "live", "point", "parameters",
+    lists = {"observable": _observable, "retired": _retired, "level": _level, "vary": _vary, "beside": _beside}
+    _only(table, ("purpose", "equations", "tier", "cost", "refined", "remark", "equivalence", "live", "point", "parameters",
                   "formulas", *lists), where)
     found = {key: _all_of(table, key, read, where) for key, read in lists.items()}
     for i, observable in enumerate(found["observable"]):
@@ -267,6 +382,7 @@ def read_cases(file: Path) -> list[Case]:
             raise CaseError(f"{where}.observable[{i}].live: no reference code is run; add [case.live]")
     parameters, formulas = read_parameters(table, scene, where)
     equivalence = table.get("equivalence")
+    live = _live(table["live"], f"{where}.live") if "live" in table else None
     case = Case(
         name=file.parent.name,
         file=file,
@@ -275,13 +391,14 @@ def read_cases(file: Path) -> list[Case]:
         cost=_cost(table, where),
         equations=_texts(table, "equations", where, []),
         refined=_choice(table, "refined", REFINED, where, "spacing"),
-        stalls=" ".join(_entry(table, "stalls", str, where, "").split()),
-        observables=found["observable"],
+        remark=" ".join(_entry(table, "remark", str, where, "").split()),
+        observables=_of_one_law(found["observable"], live),
+        retired=found["retired"],
         levels=found["level"],
         vary=found["vary"],
         beside=found["beside"],
         equivalence=None if equivalence is None else read_equivalence(equivalence, f"{where}.equivalence"),
-        live=_live(table["live"], f"{where}.live") if "live" in table else None,
+        live=live,
         plain=scene,
         parameters=parameters,
         formulas=formulas,

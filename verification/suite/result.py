@@ -12,7 +12,6 @@ from verification.codes.mappm import Options, run
 from verification.measures.curve import kept_chart
 from verification.measures.measures import Point, measures_in
 from verification.measures.source import measure_id
-from verification.protocol.quantity import COVERAGE
 from verification.store.key import canonical_scene, hash_of
 from verification.store.laboratory import Laboratory, made_now
 from verification.store.store import Found, Made
@@ -123,7 +122,7 @@ class CaseResult:
         first, finest = self.outcomes[0], self.finest
         reference = {name: found.value for name, found in self.live.quantities.items()} if self.live else {}
         return Point(self.case.family, self.case.name.partition(".")[2], finest.scene, finest.figures, reference, first.measured.value,
-                     first.error, COVERAGE * first.u_num * first.scale, first.scale)
+                     first.error, first.coverage * first.u_num * first.scale, first.scale)
 
 
 def exactness(entries: Entries) -> Exactness:
@@ -254,5 +253,5 @@ def run_with(laboratory: Laboratory, case: Case, overrides: tuple[str, ...], cod
     overrides = case.base + overrides
     observables = tuple(replace(observable, order=None, extrapolated=None) for observable in case.observables)
     alone = replace(case, scene=scene_of(case, overrides), observables=observables, levels=(Level(overrides, "quick"),), vary=(),
-                    beside=(), equivalence=None, stalls="")
+                    beside=(), equivalence=None, remark="")
     return run_case(laboratory, alone, "quick", code, way, lambda text: None)
