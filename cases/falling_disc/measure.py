@@ -98,20 +98,6 @@ def slip(run: Run) -> tuple[np.ndarray, np.ndarray]:
     return time - relax * series["time"][-1] / series["step"][-1], -series["slip_x"][since]
 
 
-def measured_law(run: Run) -> Law:
-    """Of the end of a run, where the flow is steady, with the body free or held.
-
-    The momentum of the fluid in slow relaxation is that of its energy: with the velocity field of the steady flow times
-    w(t), seen from the body, F w = f w + d/dt (1/2 integral of rho u^2), an integral that goes as w^2.
-    """
-    release, tail = release_of(run), slice(-max(1, len(run.series) // 10), None)
-    w, body, fluid, energy = (float(np.mean(values[tail])) for values in (
-        slip(run)[1], *(run.series[name] for name in ("solid_velocity_x", "fluid_velocity_x", "fluid_energy"))))
-    mass = release.fluid_mass
-    seen = energy - mass * fluid * body + 0.5 * mass * body**2
-    return Law(release.force / w, 2 * seen / w**2 - mass)
-
-
 def terminal_velocity(run: Run) -> Measured:
     """Mean of the last tenth of the run; uncertainty, how far it still moves there."""
     tail = slip(run)[1][-max(2, len(run.series) // 10) :]
@@ -122,6 +108,23 @@ def relaxation_time(run: Run) -> Measured:
     time, w = slip(run)
     reached = -np.expm1(-1.0) * terminal_velocity(run).value
     return Measured(float(np.interp(reached, w, time)), float(time[1] - time[0]) / 2)
+
+
+@cache
+def stokes_relaxation(release: Release) -> float:
+    """When the slip of unsteady Stokes flow is 1 - 1/e of its limit, by three steps of the secant."""
+    limit = release.force / stokes_law(release).drag
+
+    def missing(time: float) -> float:
+        return float(stokes_flow(release, (time,))[0] / limit + np.expm1(-1.0))
+
+    law = stokes_law(release)
+    before, now = (share * (release.reduced_mass + law.virtual_mass) / law.drag for share in (0.9, 1.0))
+    left, right = missing(before), missing(now)
+    for _ in range(3):
+        before, now = now, now - right * (now - before) / (right - left)
+        left, right = right, missing(now)
+    return now
 
 
 def _times(run: Run) -> np.ndarray:
@@ -136,6 +139,19 @@ def _times(run: Run) -> np.ndarray:
 def _largest(run: Run, expected: np.ndarray) -> Measured:
     time, w = slip(run)
     return Measured(float(np.max(np.abs(np.interp(_times(run), time, w) - expected)) / expected[-1]), 0.0)
+
+
+def _over(measured: Measured, exact: float) -> Measured:
+    return Measured(measured.value / exact, measured.uncertainty / exact)
+
+
+def terminal_over_exact(run: Run) -> Measured:
+    release = release_of(run)
+    return _over(terminal_velocity(run), release.force / stokes_law(release).drag)
+
+
+def relaxation_over_exact(run: Run) -> Measured:
+    return _over(relaxation_time(run), stokes_relaxation(release_of(run)))
 
 
 def from_drag_law(run: Run) -> Measured:
@@ -155,19 +171,16 @@ def lag(run: Run) -> Measured:
 
 
 def reference_options(runs: Sequence[Values]) -> dict[str, str]:
-    """The drag law for LIGGGHTS, of the run with the body held fixed."""
-    (held,) = [one.values for one in runs if one.scene["body"][0].get("motion") == "fixed"]
-    free = next(one.values for one in runs if one.scene["body"][0].get("motion") != "fixed")
-    mass = free["reduced_mass"] + held["law_mass"]
-    return {"gamma": f"{held['law_drag']:.12g}", "force": f"{held['force']:.12g}", "mass": f"{mass:.12g}"}
+    """The drag law that is handed to LIGGGHTS: nothing of it is measured here."""
+    values = runs[0].values
+    return {"gamma": f"{values['law_drag']:.12g}", "force": f"{values['force']:.12g}", "mass": f"{values['law_mass']:.12g}"}
 
 
-# Of every run: what the drag law for LIGGGHTS is made of.
+# The same of every run: what the drag law for LIGGGHTS is made of, by Stokes flow through the array.
 FIGURES = {
     "force": lambda run: release_of(run).force,
-    "reduced_mass": lambda run: release_of(run).reduced_mass,
-    "law_drag": lambda run: measured_law(run).drag,
-    "law_mass": lambda run: measured_law(run).virtual_mass,
+    "law_drag": lambda run: stokes_law(release_of(run)).drag,
+    "law_mass": lambda run: release_of(run).reduced_mass + stokes_law(release_of(run)).virtual_mass,
 }
 
 
@@ -189,14 +202,14 @@ def curves(run: Run) -> list[Chart]:
 
 def charts_of_both(run: Run, other: Run) -> list[Chart]:
     table, (time, w) = read_table(other.folder / "table.csv"), slip(run)
-    theirs = Curve("LIGGGHTS, drag and dragged fluid as measured", table["time"], table["velocity"], reference=True)
+    theirs = Curve("LIGGGHTS, drag and dragged fluid of steady Stokes flow", table["time"], table["velocity"], reference=True)
     difference = (w - np.interp(time, table["time"], table["velocity"])) / table["velocity"][-1]
     return [Chart("Slip after release", "time", "w", (theirs, Curve("MaPPM", time, w))),
             Chart("Difference from LIGGGHTS", "time", "over w at the end", (Curve("MaPPM", time, difference),))]
 
 
 MEASURES = Measures(
-    observables=by_name(terminal_velocity, relaxation_time, from_drag_law, from_stokes_flow),
+    observables=by_name(terminal_velocity, terminal_over_exact, relaxation_over_exact, from_drag_law, from_stokes_flow),
     figures=FIGURES,
     charts=curves,
     charts_of_both=charts_of_both,

@@ -221,7 +221,7 @@ set = ["fluid.method=classic"]
         (OBSERVABLE.replace("2026-11-22", '"2026-11-22"'), "write a day, such as 2026-11-22, without quotes"),
         (OBSERVABLE + EARLIER, "observable[0].why: missing; it asks for less than what was there before"),
         (OBSERVABLE + 'why = "it missed it"\n' + EARLIER.replace("11-20", "11-24"), "put the oldest first"),
-        (RETIRED, "retired[0].why: missing"),
+        (RETIRED, "retired[0].reason: missing"),
         ('[[case.level]]\nset = "a=1"', "wrong type"),
         ('[[case.level]]\nset = []\ntier = "slow"', "tier = 'slow': unknown"),
         (OBSERVABLE + "goal2 = 1", "goal2: unknown"),
@@ -289,11 +289,11 @@ def test_a_miss_that_is_explained_has_failed_and_says_why() -> None:
 
 
 def test_a_goal_has_its_days_and_reasons(tmp_path: Path) -> None:
-    (case,) = read_cases(written(tmp_path, OBSERVABLE + 'why = "it missed it"\n' + EARLIER + RETIRED + 'why = "no reference"\n'))
+    (case,) = read_cases(written(tmp_path, OBSERVABLE + 'why = "it missed it"\n' + EARLIER + RETIRED + 'reason = "no reference"\n'))
     (one,), (gone,) = case.observables, case.retired
     assert one.earlier == (Standard(date(2026, 11, 20), 0.05),) and one.standard == Standard(date(2026, 11, 22), 0.1, why="it missed it")
     assert one.standard.is_looser_than(one.earlier[0]) and not one.earlier[0].is_looser_than(one.standard)
-    assert (gone.symbol, gone.until, gone.why) == ("L", date(2026, 11, 22), "no reference")
+    assert (gone.symbol, gone.until, gone.reason) == ("L", date(2026, 11, 22), "no reference")
     left, looser = changes_of_standards([case])
     assert (left.kind, left.symbol, left.after) == ("left out", "L", None)
     assert (looser.kind, looser.why, standard_text(looser.before), standard_text(looser.after)) == ("looser", "it missed it", "0.05", "0.1")
@@ -311,10 +311,10 @@ def test_what_asks_for_less_is_looser(before: dict, after: dict, looser: bool) -
 def lines_of(name: str, case: Case) -> list[str]:
     """What of the register is in the manifest of a case, oldest first, a line each."""
     found = []
-    for one in case.observables:
-        for standard in (*one.earlier, one.standard):
-            found.append([name, one.against, f"{standard.since}", standard_text(standard)])
-    found += [[name, one.symbol, f"{one.standard.since}", standard_text(one.standard), f"left out {one.until}"] for one in case.retired]
+    for one in (*case.observables, *case.retired):
+        symbol = one.against if isinstance(one, Observable) else one.symbol
+        found += [[name, symbol, f"{standard.since}", standard_text(standard)] for standard in (*one.earlier, one.standard)]
+    found += [[name, one.symbol, f"left out {one.until}"] for one in case.retired]
     return [json.dumps(line, ensure_ascii=False) for line in found]
 
 

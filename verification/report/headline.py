@@ -3,8 +3,9 @@
 from collections import Counter
 from dataclasses import dataclass
 from datetime import date
+from itertools import pairwise
 
-from verification.suite.case import Case, Observable, Standard
+from verification.suite.case import Case, Observable, Retired, Standard
 from verification.suite.judge import VERDICTS
 from verification.suite.ladder import CONVERGING, DIVERGING, NOISE_LIMITED, NOT_CONVERGING
 from verification.suite.result import CaseResult
@@ -68,11 +69,11 @@ def standard_text(standard: Standard | None) -> str:
     return f"{standard.goal:g}{band}" + (f", dx to 0 {standard.extrapolated:g}" if standard.extrapolated is not None else "")
 
 
-def _of_observable(case: str, observable: Observable) -> list[Change]:
-    standards = [*observable.earlier, observable.standard]
-    told = [Change(case, observable.symbol, standards[0].since, None, standards[0], standards[0].why)] if standards[0].why else []
-    return told + [Change(case, observable.symbol, after.since, before, after, after.why)
-                   for before, after in zip(standards, standards[1:], strict=False)]
+def _of_one(case: str, one: Observable | Retired) -> list[Change]:
+    standards = [*one.earlier, one.standard]
+    told = [Change(case, one.symbol, standards[0].since, None, standards[0], standards[0].why)] if standards[0].why else []
+    told += [Change(case, one.symbol, after.since, before, after, after.why) for before, after in pairwise(standards)]
+    return told + ([Change(case, one.symbol, one.until, one.standard, None, one.reason)] if isinstance(one, Retired) else [])
 
 
 def of_families(cases: list[Case]) -> list[tuple[str, Case]]:
@@ -93,7 +94,6 @@ def _bands(case: Case) -> int:
 def changes_of_standards(cases: list[Case]) -> list[Change]:
     """The loosened first, then by day."""
     families = of_families(cases)
-    found = [change for name, case in families for one in case.observables for change in _of_observable(name, one)]
-    found += [Change(name, one.symbol, one.until, one.standard, None, one.why) for name, case in families for one in case.retired]
+    found = [change for name, case in families for one in (*case.observables, *case.retired) for change in _of_one(name, one)]
     order = ("left out", "looser", "set", "tighter")
     return sorted(dict.fromkeys(found), key=lambda change: (order.index(change.kind), change.day, change.case))

@@ -35,9 +35,10 @@ class Retired:
 
     name: str
     symbol: str
-    standard: Standard
+    standard: Standard  # the last
+    earlier: tuple[Standard, ...]
     until: date
-    why: str
+    reason: str
 
 
 @dataclass(frozen=True)

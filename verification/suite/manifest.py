@@ -58,9 +58,9 @@
     name = "drag"
     symbol = "F/(mu U)"
     since = 2026-11-20              # of its last goal
-    goal = 0.02                     # order and extrapolated likewise
+    goal = 0.02                     # order, extrapolated, why and earlier likewise
     until = 2026-11-22
-    why = "why it was left out"
+    reason = "why it was left out"
 
     [[case.level]]                  # from coarse to fine; `set = []` is the scene as it stands
     set = ["R_over_dx=12"]
@@ -202,9 +202,10 @@ def _earlier(table: dict, now: Standard, where: str) -> tuple[Standard, ...]:
 
 
 def _retired(table: dict, where: str) -> Retired:
-    _only(table, (*STANDARD, "name", "symbol", "until"), where)
-    name, symbol, why = (" ".join(_entry(table, key, str, where).split()) for key in ("name", "symbol", "why"))
-    return Retired(name, symbol, replace(_standard(table, where), why=""), _day(table, "until", where), why)
+    _only(table, (*STANDARD, "name", "symbol", "earlier", "until", "reason"), where)
+    name, symbol, reason = (" ".join(_entry(table, key, str, where).split()) for key in ("name", "symbol", "reason"))
+    standard = _standard(table, where)
+    return Retired(name, symbol, standard, _earlier(table, standard, where), _day(table, "until", where), reason)
 
 
 def _observable(table: dict, where: str) -> Observable:
