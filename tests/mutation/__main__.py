@@ -154,6 +154,16 @@ def only_run() -> Iterator[None]:
         yield
 
 
+def write_whole_tree(everything: list[Mutant]) -> dict[str, Detector]:
+    """The copy of the sources with all faults; every detector by its text. Throws ManifestError."""
+    detectors = {text: Detector(text) for mutant in everything for text in mutant.caught_by}
+    for detector in detectors.values():
+        detector.check()
+    write_tree(everything, {detector.test_file for detector in detectors.values() if detector.test_file}
+               | {"tests/mpi/main.cpp"})
+    return detectors
+
+
 def parsed() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python3 -m tests.mutation", description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="only the faults marked quick")
@@ -168,12 +178,8 @@ def main() -> int:
     arguments = parsed()
     everything = read_manifests()
     mutants = chosen(everything, arguments.quick, arguments.only)
-    detectors = {text: Detector(text) for mutant in everything for text in mutant.caught_by}
-    for detector in detectors.values():
-        detector.check()
+    detectors = write_whole_tree(everything)
     needed = list(dict.fromkeys(text for mutant in mutants for text in mutant.caught_by))
-    write_tree(everything, {detector.test_file for detector in detectors.values() if detector.test_file}
-               | {"tests/mpi/main.cpp"})
     targets = {"mappm", "mappm-reference"}.union(*(detectors[text].targets for text in needed))
     print(f"building {', '.join(sorted(targets))} with {len(everything)} sleeping faults", file=sys.stderr, flush=True)
     build_tree(sorted(targets), arguments.jobs)
