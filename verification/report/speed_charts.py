@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from verification.report.charts import BLUE, DARK, GREEN, GREY, RED, figure_of
-from verification.report.solid_charts import costs_of_solids
+from verification.report.solid_charts import ERROR, bars, costs_of_solids
 from verification.store.figures import Figures, Setting
 
 FLUIDS = {"2d_39": "plane, 39 neighbours", "3d_77": "space, 77 neighbours"}
@@ -34,9 +34,12 @@ def _bars_of_codes(axes, figures: Figures, name: str) -> None:
     for side, (code, (words, color)) in zip((-0.3, -0.1, 0.1, 0.3), CODES.items(), strict=True):
         rates = {place: figures.get(name, fluid=fluid, code=code, ranks=ranks) for (fluid, ranks), place in places.items()}
         rates = {place: rate / 1e6 for place, rate in rates.items() if rate is not None}
-        axes.barh([place + side for place in rates], list(rates.values()), 0.19, color=color, label=words if rates else None)
+        off = {place: [part / 1e6 for part in figures.off(name, fluid=fluid, code=code, ranks=ranks)]
+               for (fluid, ranks), place in places.items()}
+        axes.barh([place + side for place in rates], list(rates.values()), 0.19, color=color, label=words if rates else None,
+                  xerr=bars([off[place] for place in rates]), error_kw=ERROR)
         for place, rate in rates.items():
-            axes.text(rate, place + side, f" {rate:.2g}", va="center", fontsize=7)
+            axes.text(rate + off[place][1], place + side, f" {rate:.2g}", va="center", fontsize=7)
     axes.set_yticks(list(places.values()), [f"{FLUIDS[fluid]}, {'one process' if ranks == 1 else 'two'}" for fluid, ranks in places],
                     fontsize=8)
     axes.invert_yaxis()
@@ -70,7 +73,8 @@ def _efficiencies(axes, figures: Figures) -> None:
     for (scaling, fluid), (label, color, style) in sets.items():
         counts = _ranks_of(figures, "particle_steps_per_s", scaling=scaling, fluid=fluid)
         shares = [1.0] + [figures.value("efficiency", scaling=scaling, fluid=fluid, ranks=count) for count in counts[1:]]
-        axes.plot(counts, shares, style, color=color, markersize=4, linewidth=1.2, label=label)
+        off = [figures.off("efficiency", scaling=scaling, fluid=fluid, ranks=count) for count in counts]
+        axes.errorbar(counts, shares, yerr=bars(off), fmt=style, color=color, markersize=4, linewidth=1.2, label=label, **ERROR)
     _log2(axes, counts)
     axes.set_ylim(0, 1.1)
     axes.set_title("efficiency against one process", fontsize=9)
@@ -171,8 +175,9 @@ def _speeds_of_precisions(axes, figures: Figures) -> None:
     rows = [(name, precision) for name in FLUIDS for precision in ("double", "single")]
     for row, (name, precision) in enumerate(rows):
         rate = figures.value("particle_steps_per_s", fluid=name, precision=precision, ranks=1) / 1e6
-        axes.barh(row, rate, 0.7, color=BLUE if precision == "double" else GREEN)
-        axes.text(rate, row, f" {rate:.3g}", va="center", fontsize=8)
+        off = [part / 1e6 for part in figures.off("particle_steps_per_s", fluid=name, precision=precision, ranks=1)]
+        axes.barh(row, rate, 0.7, color=BLUE if precision == "double" else GREEN, xerr=bars([off]), error_kw=ERROR)
+        axes.text(rate + off[1], row, f" {rate:.3g}", va="center", fontsize=8)
     axes.set_yticks(range(len(rows)), [f"{FLUIDS[name]}, {precision}" for name, precision in rows], fontsize=8)
     axes.invert_yaxis()
     axes.margins(x=0.1)
