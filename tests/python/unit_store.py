@@ -336,6 +336,14 @@ def test_cores_are_in_the_key_of_a_code_without_digest_alone(tmp_path: Path) -> 
     assert run_key(other, SCENE, cores=1) != run_key(other, SCENE, cores=4)
 
 
+def test_options_that_change_the_speed_alone_are_in_the_key_of_a_code_without_digest_alone(tmp_path: Path) -> None:
+    quick = {"speed_options": frozenset({"threads"})}
+    bits, other = replace(tiny(tmp_path / "bits", EXACT_BITS, 2).code, **quick), replace(tiny(tmp_path / "other").code, **quick)
+    assert run_key(bits, SCENE, options={"threads": "2"}) == run_key(bits, SCENE) != run_key(bits, SCENE, options={"levels": "2"})
+    assert run_key(other, SCENE, options={"threads": "2"}) != run_key(other, SCENE)
+    assert {"threads", "isa", "domains"} <= find_code("mappm").speed_options
+
+
 def test_what_makes_another_run_makes_another_key(tmp_path: Path) -> None:
     code = tiny(tmp_path, EXACT_BITS, 2).code
     keys = [run_key(code, SCENE), run_key(code, SCENE, 10), run_key(code, SCENE, options={"a": "1"}),
