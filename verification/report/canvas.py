@@ -10,18 +10,16 @@ from textwrap import fill
 import matplotlib
 from matplotlib.ticker import FixedFormatter, FixedLocator, MaxNLocator, NullLocator
 from matplotlib.transforms import ScaledTranslation
-from PIL import Image
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of a backend without a display)
 
 STYLE = {"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.3,
          "svg.fonttype": "none", "svg.hashsalt": "mappm"}
-BLUE, GREEN, RED, GREY, DARK, PALE = "#1f5a96", "#17663a", "#b00020", "#888888", "#333333", "#6f9cc4"
+BLUE, GREEN, RED, GREY, DARK = "#1f5a96", "#17663a", "#b00020", "#888888", "#333333"
 SMALL = 8  # points, of a legend
 CHARACTER, HANDLE, LINE = 0.062, 0.44, 0.17  # inches: width of a letter of a legend, of its sample, and height of its lines
 TICKS, NAME = 20, 16  # points below the axes that labels of ticks and the name of the axis take
-COLOURS = 256  # of a picture of points
 FEW, MANY = 3, 7  # ticks of a logarithmic axis
 
 
@@ -39,15 +37,6 @@ def figure_of(file: Path, width: float, height: float, rows: int = 1, columns: i
                 _label(axis)
         figure.savefig(file, dpi=130, bbox_inches="tight" if cut else None)
         plt.close(figure)
-    if file.suffix == ".png":
-        _pack(file)
-
-
-def _pack(file: Path) -> None:
-    """A palette takes a third of the room, on a page that holds all pictures."""
-    with Image.open(file) as picture:
-        packed = picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
-    packed.save(file, optimize=True)
 
 
 def _legend_below(axes, width: float) -> int:
