@@ -6,7 +6,7 @@ from pathlib import Path
 from verification.measures.curve import Chart, chart_of
 from verification.measures.measures import measures_in
 from verification.protocol.run import Run
-from verification.report import charts
+from verification.report import charts, suite_charts
 from verification.report.pictures import velocity_field
 from verification.report.side_by_side import compare_fields
 from verification.store.laboratory import Laboratory
@@ -75,11 +75,11 @@ def family_figures(results: list[CaseResult], out: Path) -> tuple[Path, ...]:
 def suite_figures(rows: list[tuple[str, Outcome]], history: list[dict], out: Path) -> dict[str, Path]:
     """The overview (also as PNG, for the summary) of (name, outcome), and the trend where there is an earlier report."""
     found = {"overview": out / "overview.svg"}
-    charts.overview(rows, found["overview"])
-    charts.overview(rows, out / "overview.png")
+    suite_charts.overview(rows, found["overview"])
+    suite_charts.overview(rows, out / "overview.png")
     if len(history) > 1:
         found["trend"] = out / "trend.svg"
-        charts.trend(history, list(history[-1]["errors"]), found["trend"])
+        suite_charts.trend(history, list(history[-1]["errors"]), found["trend"])
     return found
 
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from verification.report.charts import BLUE, DARK, GREY, figure_of
+from verification.report.canvas import BLUE, DARK, GREY, figure_of
 from verification.store.figures import Figures
 
 SUSPENSIONS = {"13_2d": "discs, 13 %", "13_3d": "spheres, 13 %", "dense_2d": "discs, 70 %, in contact",
@@ -41,7 +41,6 @@ def _shares(axes, figures: Figures) -> None:
     axes.set_yticks(range(len(SUSPENSIONS)), SUSPENSIONS.values())
     axes.set_xlim(0, 1.12 * max(passed))
     axes.set_xlabel("per cent of a step")
-    axes.legend(frameon=False, fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
 
 
 def _costs(axes, figures: Figures) -> None:
@@ -55,4 +54,3 @@ def _costs(axes, figures: Figures) -> None:
     axes.axvline(1.0, color=DARK, linewidth=1)
     axes.set_yticks(range(len(SUSPENSIONS)), [])
     axes.set_xlabel("cost of a PP over one of the fluid alone")
-    axes.legend(frameon=False, fontsize=8, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from verification.report.charts import BLUE, DARK, GREEN, GREY, RED, figure_of
+from verification.report.canvas import BLUE, DARK, GREEN, GREY, RED, figure_of
 from verification.report.solid_charts import ERROR, bars, costs_of_solids
 from verification.store.figures import Figures, Setting
 
@@ -44,7 +44,6 @@ def _bars_of_codes(axes, figures: Figures, name: str) -> None:
                     fontsize=8)
     axes.invert_yaxis()
     axes.margins(x=0.12)
-    axes.legend(frameon=False, fontsize=7, loc="lower right")
 
 
 def _ranks_of(figures: Figures, name: str, **settings: Setting) -> list[int]:
@@ -78,7 +77,6 @@ def _efficiencies(axes, figures: Figures) -> None:
     _log2(axes, counts)
     axes.set_ylim(0, 1.1)
     axes.set_title("efficiency against one process", fontsize=9)
-    axes.legend(frameon=False, fontsize=7, loc="lower left")
 
 
 def _core_times(axes, figures: Figures) -> None:
@@ -97,7 +95,6 @@ def _core_times(axes, figures: Figures) -> None:
     axes.set_xticks(range(len(counts)), counts)
     axes.set_xlabel("processes")
     axes.set_title("core time of a PP and step (ns), 100 000 a process", fontsize=9)
-    axes.legend(frameon=False, fontsize=7, loc="upper left")
 
 
 def costs(figures: Figures, file: Path) -> None:
@@ -110,7 +107,6 @@ def costs(figures: Figures, file: Path) -> None:
         time.plot(counts, [alone / count for count in counts], "--", color=GREY, linewidth=1, label="without ghosts and messages")
         time.set_yscale("log")
         time.set_title("the paper's 5.6 million PPs: a step (ms)", fontsize=9)
-        time.legend(frameon=False, fontsize=8)
         shares = [figures.value("efficiency", system="paper", ranks=count) for count in counts]
         efficiency.plot(counts, shares, "o-", color=BLUE, markersize=4, linewidth=1.2)
         efficiency.set_ylim(0, 1.1)
@@ -137,7 +133,6 @@ def bounds(figures: Figures, file: Path) -> None:
         axes[0].set_yticks(range(len(LIMITS) + 2), ["the pass, measured", "order and lists, once a stay", *LIMITS.values()])
         axes[0].invert_yaxis()
         axes[1].tick_params(labelleft=False)
-        axes[1].legend(frameon=False, fontsize=8, loc="lower right")
 
 
 def _bars_of_pair(axes, figures: Figures, fluid: str) -> None:
@@ -168,7 +163,6 @@ def precisions(figures: Figures, file: Path) -> None:
         accuracy.set_yscale("log")
         accuracy.set_xlabel("spacing (in lengths of the case)")
         accuracy.set_title("difference over the answer", fontsize=9)
-        accuracy.legend(frameon=False, fontsize=6)
 
 
 def _speeds_of_precisions(axes, figures: Figures) -> None:
