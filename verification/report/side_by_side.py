@@ -102,11 +102,10 @@ def apart(scene: dict, difference: np.ndarray) -> Apart:
 
 
 def caption(found: Apart, code: str) -> str:
-    """Why the difference has a ring at the surface, and how large it is there and elsewhere."""
-    return ("Dashed: one cutoff from the surface. Within it MaPPM's kernel reaches into the solid: the field is smoothed, and "
-            f"shows the disorder of single particles, while {code}'s mesh fits the surface. The difference there has an rms of "
-            f"{100 * found.layer:.2g} %, beyond it {100 * found.beyond:.2g} % of the mean speed; its mean over the fluid "
-            f"is {100 * found.mean:+.2g} %.")
+    """How large the difference is at the surface and elsewhere, and what its single spots are."""
+    return (f"Dashed: one cutoff from the surface. Within it the difference from {code} has an rms of {100 * found.layer:.2g} %, beyond it "
+            f"{100 * found.beyond:.2g} % of the mean speed; its mean over the fluid is {100 * found.mean:+.2g} %. One snapshot is shown: "
+            "single spots of both signs are the disorder of the particles at that time.")
 
 
 def _draw_layer(axes, balls: Balls, cutoff: float) -> None:
