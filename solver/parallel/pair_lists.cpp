@@ -31,9 +31,7 @@ void PairLists<D, Numbers>::make(Blocks& blocks, const FluidParticles<D>& fluid,
             const auto is_foreign = [&](std::uint32_t other) { return foreign_[other] != 0; };
             const bool alone = apart && foreign_[slot / lanes] == 0 && std::ranges::none_of(near, is_foreign);
             const bool all = marks.inside[slot] != 0;
-            const auto is_wide = [&](std::uint32_t other) {
-              return marks.wide[other] != 0 || marks.wide[slot / lanes] != 0;
-            };
+            const auto is_wide = [&](std::uint32_t other) { return marks.wide[other] != 0; };
             kept[alone ? inner : rest].add(
                 slot, near, [&](std::uint32_t other) { return all || marks.reaches_inside[other] != 0; }, is_wide,
                 [&](std::uint32_t other) { return lanes_near(blocks, fluid, slot, other); });
