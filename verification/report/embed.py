@@ -4,6 +4,7 @@ import base64
 import gzip
 import io
 import re
+from collections import Counter
 from pathlib import Path
 from urllib.parse import quote
 
@@ -20,6 +21,23 @@ def _shorter(number: re.Match) -> str:
     return f"{round(float(number[0]), 2) + 0.0:g}"
 
 
+def _without_bare_groups(svg: str) -> str:
+    """From the innermost outwards."""
+    while (fewer := re.sub(r"<g>((?:(?!</?g\b).)*)</g>", r"\1", svg)) != svg:
+        svg = fewer
+    return svg
+
+
+def _with_classes(svg: str) -> str:
+    """Every style that stands more than once becomes a class."""
+    counts = Counter(re.findall(r' style="([^"]*)"', svg))
+    names = {style: f"s{k}" for k, style in enumerate(style for style, count in counts.items() if count > 1)}
+    svg = re.sub(r' style="([^"]*)"', lambda found: f' class="{names[found[1]]}"' if found[1] in names else found[0], svg)
+    sheet = "".join(f".{name}{{{style.replace(': ', ':').replace('; ', ';')}}}" for style, name in names.items())
+    start = svg.index(">") + 1
+    return f"{svg[:start]}<style>{sheet}</style>{svg[start:]}" if names else svg
+
+
 def smaller(svg: str) -> str:
     """An SVG of matplotlib without what no browser draws: metadata, comments, fonts beyond two, hundredths of a point."""
     svg = svg[svg.index("<svg") :]
@@ -29,7 +47,8 @@ def smaller(svg: str) -> str:
     svg = re.sub(r' transform="rotate\(-0 [^"]*\)"', "", svg)
     svg = re.sub(r'(?<= d=")[^"]*|(?<= [xy]=")[^"]*', lambda found: re.sub(r"-?\d+\.\d{3,}", _shorter, found[0]), svg)
     svg = re.sub(r"\s+", " ", svg)
-    return re.sub(r" ?([MLQCHVZz]) (?=[-\d\"])", r"\1", svg).replace("> <", "><")
+    svg = re.sub(r" ?([MLQCHVZz]) (?=[-\d\"])", r"\1", svg).replace("> <", "><")
+    return _with_classes(_without_bare_groups(svg))
 
 
 def embedded(file: Path) -> Markup:

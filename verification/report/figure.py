@@ -50,10 +50,11 @@ def curves_caption(name: str, chart: Chart) -> str:
     """Which curves are which."""
     reference = [curve.label for curve in chart.curves if curve.reference and curve.label]
     measured = [curve.label for curve in chart.curves if not curve.reference and curve.label]
-    parts = [f"{name}: {chart.title or chart.y_label}, against {chart.x_label}"]
-    parts += [f"in colour {'; '.join(measured)}"] if measured else []
-    parts += [f"dark {'; '.join(reference)}"] if reference else []
-    return ". ".join(part[0].upper() + part[1:] if k else part for k, part in enumerate(parts)) + "."
+    title = chart.title or chart.y_label
+    parts = [f"{name}: {title[0].lower() + title[1:]}" + ("" if chart.x_label in title else f", over {chart.x_label}")]
+    parts += [f"In colour: {'; '.join(measured)}"] if measured else []
+    parts += [f"Reference: {'; '.join(reference)}"] if reference else []
+    return ". ".join(parts) + "."
 
 
 def levels_csv(outcome: Outcome, refined: str) -> str:
