@@ -14,7 +14,6 @@ the machine is slow.
 
 import argparse
 import shutil
-import statistics
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,7 +21,7 @@ from pathlib import Path
 
 from bench.codes import SCENE, fluid_table
 from bench.largest_step import VISCOSITY
-from bench.meter import Broken, Meter, Row, Speed, median_rate, median_ratio, row, run_benchmark
+from bench.meter import Broken, Meter, Row, Speed, rate_of, ratio_of, row, run_benchmark, spread_of
 from bench.solids import GAS_SOLID, QUICK_SUSPENSIONS, SUSPENSIONS, UNSAMPLED, Suspension
 from reference.periodic_fluid import Fluid
 from verification.codes.mappm import Options, build_folder, run
@@ -108,12 +107,12 @@ def rows_of(scene: str, found: dict[tuple[str, int], list[FlowTime]]) -> list[Ro
         rows.append(row("step", found[build, 1][0].step, "h/c", **here))
         for ranks in PROCESSES:
             times = found[build, ranks]
-            rows += [row("particle_steps_per_s", median_rate(times), "1/s", **here, ranks=ranks),
-                     row("core_s_per_pp", statistics.median(time.cost for time in times), "s/(h/c)", **here, ranks=ranks)]
-        rows.append(row("two_processes_over_one", median_ratio(found[build, 2], found[build, 1]), **here))
+            rows += [row("particle_steps_per_s", rate_of(times), "1/s", **here, ranks=ranks),
+                     row("core_s_per_pp", spread_of(time.cost for time in times), "s/(h/c)", **here, ranks=ranks)]
+        rows.append(row("two_processes_over_one", ratio_of(found[build, 2], found[build, 1]), **here))
     for ranks in PROCESSES:
         ratios = (old.cost / new.cost for old, new in zip(found[OLD, ranks], found[NEW, ranks], strict=True))
-        rows.append(row("old_cost_over_new", statistics.median(ratios), scene=scene, ranks=ranks))
+        rows.append(row("old_cost_over_new", spread_of(ratios), scene=scene, ranks=ranks))
     return rows
 
 

@@ -57,12 +57,31 @@ class Meter:
         return found
 
 
-def median_rate(speeds: list[Speed]) -> float:
-    return statistics.median(speed.rate for speed in speeds)
+@dataclass(frozen=True)
+class Spread:
+    """Of the same figure over rounds: its median, the lowest and the highest."""
+
+    value: float
+    low: float
+    high: float
+
+    def times(self, factor: float) -> "Spread":
+        """By a factor above 0."""
+        return Spread(factor * self.value, factor * self.low, factor * self.high)
 
 
-def median_ratio(over: list[Speed], under: list[Speed]) -> float:
-    return statistics.median(a.rate / b.rate for a, b in zip(over, under, strict=True))
+def spread_of(values: Iterable[float]) -> Spread:
+    found = list(values)
+    return Spread(statistics.median(found), min(found), max(found))
+
+
+def rate_of(speeds: list[Speed]) -> Spread:
+    return spread_of(speed.rate for speed in speeds)
+
+
+def ratio_of(over: list[Speed], under: list[Speed]) -> Spread:
+    """Of the ratios within a round."""
+    return spread_of(a.rate / b.rate for a, b in zip(over, under, strict=True))
 
 
 @dataclass(frozen=True)
@@ -73,21 +92,25 @@ class Row:
     value: float
     unit: str
     settings: dict[str, Setting]
+    low: float | None = None  # over the rounds; None for what was found once
+    high: float | None = None
 
 
-def row(name: str, value: float, unit: str = "", **settings: Setting) -> Row:
+def row(name: str, value: float | Spread, unit: str = "", **settings: Setting) -> Row:
+    if isinstance(value, Spread):
+        return Row(name, value.value, unit, settings, value.low, value.high)
     return Row(name, value, unit, settings)
 
 
 def entered(bench: str, rows: Iterable[Row], made: Made) -> Figures:
     """As the store keeps them."""
-    return Figures(bench, [Figure(bench, one.settings, one.name, one.value, made, one.unit) for one in rows])
+    return Figures(bench, [Figure(bench, one.settings, one.name, one.value, made, one.unit, one.low, one.high) for one in rows])
 
 
-def shown(rows: Iterable[Row]) -> Iterator[str]:
-    """A line a figure: name, settings, value, unit."""
-    for one in rows:
-        yield " ".join(filter(None, (one.name, words_of(one.settings), f"{one.value:.4g}", one.unit)))
+def shown(figures: Figures) -> Iterator[str]:
+    """A line a figure: name, settings, value, range over the rounds, unit."""
+    for one in figures.rows:
+        yield " ".join(filter(None, (one.name, words_of(one.settings), one.words, one.unit)))
 
 
 @dataclass(frozen=True)
@@ -155,9 +178,10 @@ def run_benchmark(name: str, words: str, measure: Measure, add_options: AddOptio
             store = Laboratory(options.lab).store if options.lab else None
             rows, commit = measure(options.quick, options.repeats, options.out or Path(scratch),
                                    lambda text: print(text, file=sys.stderr, flush=True), **options.more)
-            print("\n".join(shown(rows)), flush=True)
+            figures = entered(name, rows, made_now(command, commit))
+            print("\n".join(shown(figures)), flush=True)
             if store:
-                store.enter_figures(entered(name, rows, made_now(command, commit)).rows)
+                store.enter_figures(figures.rows)
         except (Broken, SolverError, Failed, StoreError) as error:
             print(f"{name}: {error}", file=sys.stderr)
             return 1

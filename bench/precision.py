@@ -15,7 +15,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from bench.codes import own_speed
-from bench.meter import Broken, Meter, Row, Speed, median_rate, median_ratio, printed, row, run_benchmark
+from bench.meter import Broken, Meter, Row, Speed, printed, rate_of, ratio_of, row, run_benchmark
 from bench.speed import FLUIDS, QUICK_FLUIDS, scene_of, steps_for
 from verification.codes.code import find_code
 from verification.codes.mappm import Options, run
@@ -44,9 +44,9 @@ def of_speed(meter: Meter, quick: bool, folder: Path) -> list[Row]:
         found = meter.rounds(f"fluid {name}", runs)
         if found["single"][0].digest != found["single_2"][0].digest:
             raise Broken(f"fluid {name}, single precision: the digest on two processes is not that on one")
-        rows += [row("particle_steps_per_s", median_rate(found[precision]), "1/s", fluid=name, precision=precision, ranks=1)
+        rows += [row("particle_steps_per_s", rate_of(found[precision]), "1/s", fluid=name, precision=precision, ranks=1)
                  for precision in ("double", "single")]
-        rows.append(row("single_over_double", median_ratio(found["single"], found["double"]), fluid=name, ranks=1))
+        rows.append(row("single_over_double", ratio_of(found["single"], found["double"]), fluid=name, ranks=1))
     return rows
 
 

@@ -14,15 +14,14 @@ with 1 where a measurement is broken, never because the machine is slow.
 
 import re
 import shutil
-import statistics
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
-from bench.meter import Broken, Printed, Row, printed, row, run_benchmark
+from bench.meter import Broken, Printed, Row, printed, row, run_benchmark, spread_of
 from verification.codes.mappm import build_folder, program
 from verification.protocol.machine import commit
 from verification.store.figures import words_of
@@ -194,7 +193,7 @@ def median_rows(rounds: list[list[Row]]) -> list[Row]:
         values = [one.value for one in same]
         if same[0].name == "pairs" and len(set(values)) > 1:
             raise Broken(f"{words_of(same[0].settings)}: rounds count different pairs")
-        rows.append(replace(same[0], value=statistics.median(values)))
+        rows.append(row(same[0].name, spread_of(values), same[0].unit, **same[0].settings))
     return rows
 
 

@@ -9,14 +9,13 @@ one round. Ends with 1 where a measurement is broken, never because the machine 
 """
 
 import argparse
-import statistics
 import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 from bench.codes import SCENE
-from bench.meter import Broken, Row, at_least, row, run_benchmark
+from bench.meter import Broken, Row, Spread, at_least, row, run_benchmark, spread_of
 from bench.speed import scene_of
 from verification.codes.mappm import Options, run
 from verification.protocol.machine import ROOT, cores
@@ -95,9 +94,9 @@ def require_one_digest(points: Iterable[Point]) -> None:
         raise Broken(f"digests differ: {', '.join(f'{p.name} on {p.processes}: {d}' for d, p in by_digest.items())}")
 
 
-def efficiency(found: dict[int, list[Point]], processes: int) -> float:
+def efficiency(found: dict[int, list[Point]], processes: int) -> Spread:
     """Median over the rounds of the rate of a process against that of one alone."""
-    return statistics.median(
+    return spread_of(
         one.seconds / one.particles * some.particles / some.seconds / processes
         for one, some in zip(found[1], found[processes], strict=True)
     )
@@ -108,7 +107,7 @@ def rows_of(found: dict[int, list[Point]], **settings: Setting) -> list[Row]:
     rows = []
     for processes, points in found.items():
         point, here = median_of(points), settings | {"ranks": processes}
-        rows.append(row("particle_steps_per_s", point.particles / point.seconds, "1/s", **here))
+        rows.append(row("particle_steps_per_s", spread_of(one.particles / one.seconds for one in points), "1/s", **here))
         if processes > 1:
             rows += [row("efficiency", efficiency(found, processes), **here), *message_rows(point, here)]
         rows += [row("microseconds_per_step", 1e6 * seconds, "us", **here, phase=phase)

@@ -10,13 +10,12 @@ measurement is broken (a run that failed, digests that differ between one proces
 """
 
 import math
-import statistics
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from bench.meter import Broken, Meter, Row, Speed, median_rate, median_ratio, row, run_benchmark
+from bench.meter import Broken, Meter, Row, Speed, ratio_of, row, run_benchmark, spread_of
 from bench.speed import steps_for
 from reference.periodic_fluid import Fluid
 from verification.codes.mappm import Options, run
@@ -155,12 +154,12 @@ def rows_of(name: str, scene: Suspension, found: dict[str, list[Cost]]) -> list[
     solids = with_solids[0].solids
     rows = [row("solids", solids, suspension=name)]
     if not scene.with_fluid:
-        return rows + [row("us_per_solid_and_step", 1e6 / median_rate(found[f"solids_{ranks}"]), "us", suspension=name, ranks=ranks)
+        return rows + [row("us_per_solid_and_step", spread_of(1e6 / one.rate for one in found[f"solids_{ranks}"]), "us", suspension=name, ranks=ranks)
                        for ranks in (1, 2)]
     for part, phases in {"solids": COST, "frozen_pairs": ("frozen_pairs",)}.items():
-        share = statistics.median(cost.share(*phases) for cost in with_solids)
+        share = spread_of(cost.share(*phases) for cost in with_solids)
         rows.append(row("share", share, suspension=name, ranks=1, part=part))
-    time = statistics.median(1e6 * cost.share(*COST) * cost.seconds_a_step / solids for cost in with_solids)
+    time = spread_of(1e6 * cost.share(*COST) * cost.seconds_a_step / solids for cost in with_solids)
     return [*rows, row("pps", round(with_solids[0].rate * with_solids[0].seconds_a_step), suspension=name),
             row("us_per_solid_and_step", time, "us", suspension=name, ranks=1), *rows_beside_fluid(name, found)]
 
@@ -170,8 +169,8 @@ def rows_beside_fluid(name: str, found: dict[str, list[Cost]]) -> list[Row]:
     rows = []
     for ranks in (1, 2):
         solids, fluid = found[f"solids_{ranks}"], found[f"fluid_{ranks}"]
-        steps = statistics.median(one.seconds_a_step / other.seconds_a_step for one, other in zip(solids, fluid, strict=True))
-        rows += [row("cost_per_pp_over_fluid", median_ratio(fluid, solids), suspension=name, ranks=ranks),
+        steps = spread_of(one.seconds_a_step / other.seconds_a_step for one, other in zip(solids, fluid, strict=True))
+        rows += [row("cost_per_pp_over_fluid", ratio_of(fluid, solids), suspension=name, ranks=ranks),
                  row("step_over_fluid", steps, suspension=name, ranks=ranks)]
     return rows
 

@@ -7,20 +7,19 @@ plane and 77 in space, the same for all codes. A code that takes longer steps ne
 useful step, which is found first (bench/largest_step.py), and what counts is flow time a core-second: the step in h/c times
 particle-steps a second and core; h is half the range of the pair law. MaPPM also runs without transport velocity, a term
 that the others do not have. These run with the skin of their lists of neighbours that is quickest at their step. Runs
-alternate, so that what else the machine does meets all of them; a figure is a median, and a ratio the median of ratios within
-one round. Prints a line a figure: name, settings, value, unit. Ends with 1 where a measurement is broken (a run
+alternate, so that what else the machine does meets all of them; a figure is a median with its range over rounds, a ratio
+that of ratios within one round. Prints a line a figure: name, settings, value, range, unit. Ends with 1 where a measurement is broken (a run
 that failed, digests that differ between one process and two), never because the machine is slow, and with 77 where LIGGGHTS or
 LAMMPS is not installed: its rows are SKIPPED.
 """
 
-import statistics
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 from bench.codes import MAPPM, WITHOUT_TRANSPORT, Code, own_speed, peers
 from bench.largest_step import VISCOSITY, Found, largest_step
-from bench.meter import Broken, Meter, Row, Speed, median_rate, median_ratio, row, run_benchmark
+from bench.meter import Broken, Meter, Row, Speed, rate_of, ratio_of, row, run_benchmark, spread_of
 from reference.periodic_fluid import Fluid
 from verification.protocol.run import Run
 
@@ -59,9 +58,9 @@ def rate_rows(fluid: str, code: Code, step: float, speeds: dict[int, list[Speed]
     """speeds: by the number of processes."""
     rows = []
     for ranks, found in speeds.items():
-        rate = median_rate(found)
+        rate = rate_of(found)
         rows += [row("particle_steps_per_s", rate, "1/s", fluid=fluid, code=code.name, ranks=ranks),
-                 row("flow_time_per_core_s", step * rate / ranks, "h/c/s", fluid=fluid, code=code.name, ranks=ranks)]
+                 row("flow_time_per_core_s", rate.times(step / ranks), "h/c/s", fluid=fluid, code=code.name, ranks=ranks)]
     return rows
 
 
@@ -70,16 +69,16 @@ def ratio_rows(fluid: str, code: Code, peer: Code, steps: dict[Code, float], fou
     rows = []
     for ranks in PROCESSES:
         settings = {"fluid": fluid, "code": code.name, "peer": peer.name, "ranks": ranks}
-        ratio = median_ratio(found[code, ranks], found[peer, ranks])
+        ratio = ratio_of(found[code, ranks], found[peer, ranks])
         rows += [row("rate_over_peer", ratio, **settings),
-                 row("flow_time_over_peer", ratio * steps[code] / steps[peer], **settings)]
+                 row("flow_time_over_peer", ratio.times(steps[code] / steps[peer]), **settings)]
     return rows
 
 
 def share_rows(fluid: str, speeds: list[Speed]) -> list[Row]:
     """Of the phases of a step."""
     phases = [speed.phases for speed in speeds]
-    return [row("share", statistics.median(seconds[phase] / sum(seconds.values()) for seconds in phases),
+    return [row("share", spread_of(seconds[phase] / sum(seconds.values()) for seconds in phases),
                 fluid=fluid, code=MAPPM.name, ranks=1, phase=phase) for phase in phases[0]]
 
 
@@ -104,7 +103,7 @@ def of_fluid(name: str, dimension: int, side: int, meter: Meter, quick: bool, fo
     for code in own:
         for peer in others:
             rows += ratio_rows(name, code, peer, steps, found)
-    rows.append(row("two_processes_over_one", median_ratio(found[MAPPM, 2], found[MAPPM, 1]), fluid=name, code=MAPPM.name))
+    rows.append(row("two_processes_over_one", ratio_of(found[MAPPM, 2], found[MAPPM, 1]), fluid=name, code=MAPPM.name))
     return rows + share_rows(name, found[MAPPM, 1])
 
 
@@ -127,10 +126,10 @@ def over_sizes(meter: Meter, quick: bool, folder: Path) -> list[Row]:
     found = meter.rounds("sizes", runs)
     rows = []
     for side in sides:
-        weak = median_ratio(found[side, 2], found[side, 1]) / 2
-        rows += [row("particle_steps_per_s", median_rate(found[side, 1]), "1/s", particles=side * side, code=MAPPM.name, ranks=1),
+        weak = ratio_of(found[side, 2], found[side, 1]).times(0.5)
+        rows += [row("particle_steps_per_s", rate_of(found[side, 1]), "1/s", particles=side * side, code=MAPPM.name, ranks=1),
                  row("weak_efficiency", weak, particles=side * side, code=MAPPM.name, ranks=2)]
-    rates = [median_rate(found[side, 1]) for side in sides]
+    rates = [rate_of(found[side, 1]).value for side in sides]
     return [*rows, row("cost_dearest_over_cheapest", max(rates) / min(rates), code=MAPPM.name, ranks=1)]
 
 

@@ -1,6 +1,6 @@
 """Published figures, looked up for a scene. README.md beside this file lists the tables and what they are worth."""
 
-from reference.published import arrays, random_arrays, sphere, ten_cate
+from reference.published import arrays, impacts, random_arrays, sphere, ten_cate
 from reference.published.value import Published
 
 TABLES = {
@@ -10,6 +10,8 @@ TABLES = {
     "isolated_sphere": sphere.isolated_sphere,
     "random_spheres": random_arrays.random_spheres,
     "ten_cate_u_max": ten_cate.largest_velocity,
+    "kharaz_restitution": impacts.kharaz_restitution,
+    "kharaz_spin": impacts.kharaz_spin,
 }
 
 

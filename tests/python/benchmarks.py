@@ -26,7 +26,7 @@ def measured(name: str, lab: Path, *options: str, code: int = 0) -> tuple[Figure
     done = benchmark(name, "--lab", str(lab), *options)
     assert done.returncode == code, done.stderr
     figures = figures_in(lab, name)
-    assert sorted(done.stdout.splitlines()) == sorted(shown(figures.rows))
+    assert sorted(done.stdout.splitlines()) == sorted(shown(figures))
     assert all(math.isfinite(row.value) for row in figures.rows)
     assert figures.made.command.startswith(f"python3 -m bench.{name}") and figures.made.source and figures.made.machine
     return figures, done

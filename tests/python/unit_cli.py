@@ -165,3 +165,11 @@ def test_compare_bits(tmp_path: Path) -> None:
     assert finished.returncode == 0, finished.stderr
     assert finished.stdout.startswith("equal at all 3 samples up to step 20, digest ")
     assert finished.stdout.endswith(": serial reference; P=1; P=2\n")
+
+
+def test_a_module_is_run_by_the_python_of_the_environment_whichever_was_called() -> None:
+    """The one without the packages starts the other, with the same module and words."""
+    for words in (["verification", "list"], ["verification.codes.exact", "describe"]):
+        called, own = (subprocess.run([python, "-m", *words], cwd=ROOT, capture_output=True, text=True)
+                       for python in (sys._base_executable, sys.executable))
+        assert (called.returncode, called.stdout) == (0, own.stdout), called.stderr

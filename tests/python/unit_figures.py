@@ -5,14 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from bench.meter import entered, printed, row, shown
+from bench.meter import Spread, entered, printed, row, shown, spread_of
 from verification.protocol.errors import StoreError
 from verification.protocol.machine import ROOT
 from verification.report.page import _environment
 from verification.report.speed_charts import CHARTS
 from verification.store.export import export, import_into
 from verification.store.figures import Figures, NoFigure, benches_of, read_benches
-from verification.store.store import Made, Store
+from verification.store.store import Figure, Made, Store
 
 PUBLISHED = ROOT / "reports" / "published" / "bench.jsonl"
 MADE = Made("2026-01-02T03:04:05Z", "a machine", "abc", "python3 -m bench.speed")
@@ -149,7 +149,18 @@ def test_the_page_says_how_figures_were_made_and_lists_all(published: dict[str, 
 
 
 def test_a_line_of_a_figure_is_name_settings_value_unit() -> None:
-    assert list(shown(ROWS[-2:])) == ["rate fluid=space ranks=2 9e+06 1/s", "lanes 8"]
+    made = Made("", "", "")
+    rows = [Figure("speed", {"ranks": 2, "fluid": "space"}, "rate", 9e6, made, "1/s", 8e6, 9.5e6), Figure("speed", {}, "lanes", 8.0, made)]
+    assert list(shown(Figures("speed", rows))) == ["lanes 8", "rate fluid=space ranks=2 9e+06 (8e+06 to 9.5e+06) 1/s"]
+
+
+def test_a_figure_over_rounds_has_its_median_and_its_range() -> None:
+    found = spread_of([3.0, 1.0, 2.0])
+    assert (found, found.times(2.0)) == (Spread(2.0, 1.0, 3.0), Spread(4.0, 2.0, 6.0))
+    (figure,) = entered("speed", [row("rate", found, "1/s", ranks=1)], Made("", "", "")).rows
+    assert (figure.value, figure.low, figure.high) == (2.0, 1.0, 3.0)
+    kept = Figures("speed", [figure])
+    assert kept.off("rate", ranks=1) == (1.0, 1.0) and kept.off("rate", ranks=2) == (0.0, 0.0)
 
 
 def test_what_programs_print_is_read_by_owner_and_name() -> None:

@@ -7,6 +7,7 @@ import pytest
 
 from reference.published import look_up
 from reference.published.contact import READING, chung_ooi
+from reference.published.impacts import UNCERTAINTY, angles_of, kharaz
 from reference.published.random_arrays import koch_hill
 from reference.published.sphere import spread
 from reference.published.table import read_table
@@ -125,3 +126,30 @@ def test_chung_and_ooi_s_oblique_impacts_slide_as_coulomb_says() -> None:
 def test_chung_and_ooi_s_other_figures_are_not_there() -> None:
     with pytest.raises(KeyError, match="there are 1 force"):
         chung_ooi(7, "force")
+
+
+def test_two_readings_of_kharaz_s_figures_agree() -> None:
+    for row in read_table("kharaz_2001").rows:
+        value, again = float(row["value"]), float(row["value_again"])
+        assert abs(float(row["angle"]) - float(row["angle_again"])) < 0.24
+        assert abs(value - again) < (0.0014 if row["figure"] == "tangential_restitution" else 1.6)
+
+
+def test_kharaz_s_spheres_slide_as_coulomb_says() -> None:
+    """From 30 degrees on: e_t = 1 - mu (1 + e) / tan(angle), with the friction and the restitution that they measured."""
+    for angle in angles_of("tangential_restitution")[4:]:
+        slides = 1 - 0.092 * 1.98 / math.tan(math.radians(angle))
+        assert kharaz("tangential_restitution", angle).value == pytest.approx(slides, abs=0.015)
+
+
+def test_kharaz_s_two_figures_differ_by_the_uncertainty_of_the_spin() -> None:
+    angles = angles_of("tangential_restitution")
+    kept = np.interp(angles_of("spin"), angles, [kharaz("tangential_restitution", angle).value for angle in angles])
+    left = [2.5 * (1 - e) * 3.9 * math.sin(math.radians(angle)) / 0.0025 for e, angle in zip(kept, angles_of("spin"), strict=True)]
+    apart = np.array([kharaz("spin", angle).value for angle in angles_of("spin")]) - left
+    assert np.sqrt(np.mean(apart**2)) == pytest.approx(UNCERTAINTY["spin"], rel=0.15)
+
+
+def test_an_angle_that_was_not_measured_is_refused() -> None:
+    with pytest.raises(ValueError, match="angle of 45 degrees: not measured; there are 1.93, 3.82"):
+        kharaz("tangential_restitution", 45.0)

@@ -10,11 +10,11 @@ from verification.protocol.points import write_points
 from verification.protocol.run import Run
 from verification.report.chapters import families_of
 from verification.report.reference_codes import reference_codes
-from verification.report.side_by_side import compare_fields, speeds
+from verification.report.side_by_side import NODES, apart, caption, compare_fields, speeds
 from verification.suite.references import Reference
 
 SIDE, RADIUS = 2.0, 0.4
-SCENE = {"box": {"size": [SIDE, SIDE]}, "fluid": {"spacing": 0.05},
+SCENE = {"box": {"size": [SIDE, SIDE]}, "fluid": {"spacing": 0.05, "rcut": 0.2},
          "body": [{"shape": "disc", "radius": RADIUS, "position": [0.1, 1.0], "motion": "fixed"}]}
 
 
@@ -82,3 +82,24 @@ def test_families_that_fail_come_first_and_rows_are_gathered_by_code() -> None:
     openfoam, liggghts = reference_codes(results)
     assert (openfoam.code, openfoam.id, len(openfoam.rows)) == ("Openfoam", "openfoam", 2)
     assert [one.case.name for one in liggghts.shown] == ["peer"]
+
+
+def test_the_difference_is_told_within_a_cutoff_of_the_surface_and_beyond() -> None:
+    x, y = np.meshgrid(*2 * [(np.arange(NODES) + 0.5) / NODES * SIDE])
+    offset = np.stack([x - 0.1, y - 1.0])
+    distance = np.linalg.norm(offset - SIDE * np.round(offset / SIDE), axis=0) - RADIUS
+    difference = np.where(distance < 0, np.nan, np.where(distance < 0.2, -0.3, 0.02))
+    found = apart(SCENE, difference)
+    assert found.layer == pytest.approx(0.3) and found.beyond == pytest.approx(0.02)
+    near = np.pi * ((RADIUS + 0.2) ** 2 - RADIUS**2) / (SIDE**2 - np.pi * RADIUS**2)  # share of the fluid
+    assert found.mean == pytest.approx(0.02 - 0.32 * near, abs=2e-3)
+    assert found.whole == pytest.approx(np.sqrt(near * 0.3**2 + (1 - near) * 0.02**2), abs=2e-3)
+    assert "an rms of 30 %, beyond it 2 % of the mean speed" in caption(found, "Other")
+
+
+def test_the_map_is_explained_in_the_picture(tmp_path: Path, drawn: list) -> None:
+    compare_fields(*both(tmp_path, 1.1), "Other", "title", tmp_path / "beside.png")
+    assert "one cutoff from the surface" in drawn[0]._supxlabel.get_text()
+    panels = [axes for axes in drawn[0].axes if axes.get_label() != "<colorbar>"]
+    assert [len(panel.patches) for panel in panels] == [0, 0, 9]  # the layer and its images
+    assert all(panel.get_xlabel() == "x" and len(panel.get_xticks()) > 1 for panel in panels)

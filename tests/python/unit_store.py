@@ -176,8 +176,30 @@ def test_a_database_of_something_else_is_named_and_left_alone(tmp_path: Path) ->
 
 def test_a_store_of_another_format_is_named(store: Store, tmp_path: Path) -> None:
     store._connection.execute("PRAGMA user_version = 7")
-    with pytest.raises(StoreError, match="is a store of format 7, and this program writes format 1; export it"):
+    with pytest.raises(StoreError, match="is a store of format 7, and this program writes format 2; export it"):
         Store(tmp_path / "store.sqlite")
+
+
+def test_a_store_of_the_first_format_is_brought_up_to_date_and_loses_nothing(tmp_path: Path) -> None:
+    """There a figure had no range over rounds."""
+    file = tmp_path / "old.sqlite"
+    made = Made("2026-11-30T12:00:00Z", "machine", "abc", "command")
+    Store(file).enter_figures([Figure("speed", {"ranks": 1}, "rate", 2.0, made, "1/s")])
+    with sqlite3.connect(file) as old:
+        for column in ("low", "high"):
+            old.execute(f"ALTER TABLE figures DROP COLUMN {column}")
+        old.execute("PRAGMA user_version = 1")
+    for _ in range(2):
+        assert Store(file).figures() == [Figure("speed", {"ranks": 1}, "rate", 2.0, made, "1/s")]
+    Store(file).enter_figures([Figure("speed", {"ranks": 1}, "rate", 2.0, made, "1/s", 1.5, 2.5)])
+    assert Store(file).figures()[0].high == 2.5
+
+
+def test_an_export_of_the_first_format_is_read(full: Store, tmp_path: Path) -> None:
+    file, other = tmp_path / "store.jsonl", Store(":memory:")
+    rows = export(full, file)
+    file.write_text(file.read_text().replace('"format":2', '"format":1', 1))
+    assert import_into(other, file) == rows
 
 
 def test_a_file_that_is_no_database_is_named_and_left_alone(tmp_path: Path) -> None:
@@ -255,7 +277,7 @@ def with_last(text: str, line: str) -> str:
     (lambda text: text[: len(text) // 2], r"store.jsonl:\d+: .*cut off: take it again"),
     (lambda text: "", "store.jsonl:1: .*no export of a store"),
     (lambda text: "\n".join(text.splitlines()[1:]), "store.jsonl:1: the first line is not"),
-    (lambda text: text.replace('"format":1', '"format":2'), "the first line is not"),
+    (lambda text: text.replace('"format":2', '"format":3'), "the first line is not"),
     (lambda text: "\n".join(text.splitlines()[:-1]) + "\n", "of so many rows as follow"),
     (lambda text: with_last(text, '{"runs":3}'), "no export of a store"),
     (lambda text: with_last(text, "[]"), "no export of a store"),
@@ -312,6 +334,14 @@ def test_cores_are_in_the_key_of_a_code_without_digest_alone(tmp_path: Path) -> 
     bits, other = tiny(tmp_path / "bits", EXACT_BITS, 2).code, tiny(tmp_path / "other").code
     assert run_key(bits, SCENE, cores=1) == run_key(bits, SCENE, cores=4)
     assert run_key(other, SCENE, cores=1) != run_key(other, SCENE, cores=4)
+
+
+def test_options_that_change_the_speed_alone_are_in_the_key_of_a_code_without_digest_alone(tmp_path: Path) -> None:
+    quick = {"speed_options": frozenset({"threads"})}
+    bits, other = replace(tiny(tmp_path / "bits", EXACT_BITS, 2).code, **quick), replace(tiny(tmp_path / "other").code, **quick)
+    assert run_key(bits, SCENE, options={"threads": "2"}) == run_key(bits, SCENE) != run_key(bits, SCENE, options={"levels": "2"})
+    assert run_key(other, SCENE, options={"threads": "2"}) != run_key(other, SCENE)
+    assert {"threads", "isa", "domains"} <= find_code("mappm").speed_options
 
 
 def test_what_makes_another_run_makes_another_key(tmp_path: Path) -> None:

@@ -327,3 +327,12 @@ def test_the_register_is_only_added_to() -> None:
     assert not lost, "write them back, as [[case.observable.earlier]] or [[case.retired]]: " + "; ".join(lost)
     new = [line for line in now if line not in kept]
     assert not new, "add to tests/python/register.jsonl:\n" + "\n".join(new)
+
+
+def test_a_point_may_have_an_explanation_of_its_own(tmp_path: Path) -> None:
+    points = '[[case.point]]\nname = "a"\nset = []\nexplained = "it sticks"\nexplained_goal = 0.3\n[[case.point]]\nname = "b"\nset = []\n'
+    known, other = read_cases(written(tmp_path, OBSERVABLE + points))
+    assert (known.observables[0].explained, known.observables[0].explained_goal) == ("it sticks", 0.3)
+    assert other.observables[0].explained == ""
+    with pytest.raises(CaseError, match=r"point\[0\].explained_goal: missing"):
+        read_cases(written(tmp_path, OBSERVABLE + points.replace("explained_goal = 0.3\n", "")))

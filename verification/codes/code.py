@@ -37,6 +37,7 @@ class Code:
     capabilities: frozenset[str]
     missing: str = ""  # what is not installed, and how to get it
     numerics_version: int | None = None
+    speed_options: frozenset[str] = frozenset()  # change the speed of a code with digests, and no bit
     adapter: str = ""  # SHA-256 of the adapter's source, and of the modules of this repository that it imports
 
 
@@ -53,7 +54,7 @@ def find_code(name_or_path: str | Path) -> Code:
     if file.parent == FOLDER and said["name"] != str(name_or_path):
         raise CaseError(f"{file} describe: name = {said['name']!r}: must be that of its file, {name_or_path}")
     return Code(said["name"], said.get("title", said["name"]), program, said["version"], frozenset(said["capabilities"]), said["missing"],
-                said.get("numerics_version"), adapter)
+                said.get("numerics_version"), frozenset(said.get("speed_options", ())), adapter)
 
 
 def _program(name: str) -> tuple[tuple[str, ...], Path]:

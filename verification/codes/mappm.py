@@ -140,13 +140,14 @@ def run(scene: Path, out: Path, options: Options = DEFAULT) -> "Run":
 
 
 class Solver(Adapter):
-    """One of the two programs behind the protocol. `allowed` are flags of it that an --option may set; ranks are cores over
-    threads."""
+    """One of the two programs behind the protocol. `allowed` are flags of it that an --option may set, none of which changes a bit; ranks
+    are cores over threads."""
 
     capabilities, title = frozenset(CAPABILITIES), "MaPPM"
 
     def __init__(self, name: str, allowed: tuple[str, ...], most_cores: int | None = None) -> None:
         self.name, self.allowed, self.most_cores = name, allowed, most_cores
+        self.speed_options = allowed
 
     def missing(self) -> str:
         try:

@@ -72,6 +72,7 @@ class Adapter(ABC):
     name: str
     capabilities: frozenset[str]
     title: str = ""  # as its authors write it; by default the name
+    speed_options: tuple[str, ...] = ()  # of a code with digests: those that change its speed and no bit
 
     @abstractmethod
     def version(self) -> str:
@@ -95,7 +96,8 @@ def describe(adapter: Adapter) -> dict:
         raise ValueError(f"{adapter.name}: capabilities {', '.join(sorted(unknown))}: unknown; known are {', '.join(CAPABILITIES)}")
     missing = adapter.missing()
     found = {"name": adapter.name, "title": adapter.title or adapter.name, "version": "" if missing else adapter.version(),
-             "capabilities": [word for word in CAPABILITIES if word in adapter.capabilities], "missing": missing}
+             "capabilities": [word for word in CAPABILITIES if word in adapter.capabilities],
+             "speed_options": list(adapter.speed_options), "missing": missing}
     number = None if missing else adapter.numerics_version()
     return found if number is None else found | {"numerics_version": number}
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from verification.measures.curve import Chart, chart_of
 from verification.measures.measures import measures_in
 from verification.protocol.run import Run
-from verification.report import charts
+from verification.report import charts, suite_charts
 from verification.report.figure import (
     ROWS,
     Figure,
@@ -115,15 +115,15 @@ def suite_figures(rows: list[tuple[str, Outcome]], history: list[dict], out: Pat
     caption = f"Error over goal of {len(shown)} rows, with k u as bars. Inside the band is within the goal."
     over_goal = [(name, one.observable.against, one.error / one.observable.goal, one.bound / one.observable.goal) for name, one in shown]
     overview = Figure(out / "overview.svg", caption, csv_of(("case", "observable", "error over goal", "k u over goal"), over_goal))
-    charts.overview(rows, overview.file)
-    charts.overview(rows, out / "overview.png")
+    suite_charts.overview(rows, overview.file)
+    suite_charts.overview(rows, out / "overview.png")
     found = {"overview": overview}
     if len(history) > 1:
         rows = [(entry["date"], entry["commit"], key, row["error"], row["goal"])
                 for entry in history[-TOLD:] for key, row in entry["errors"].items()]
         caption = f"Error over goal of every observable in {len(history)} reports, this one last; data of the last {TOLD}."
         found["trend"] = Figure(out / "trend.png", caption, csv_of(("date", "commit", "observable", "error", "goal"), rows))
-        charts.trend(history, list(history[-1]["errors"]), found["trend"].file)
+        suite_charts.trend(history, list(history[-1]["errors"]), found["trend"].file)
     return found
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from verification.protocol.machine import ROOT, processor
 from verification.suite.manifest import cases_folder
 
-PACKAGES = ("numpy", "h5py", "pyvista", "vtk", "matplotlib", "Jinja2")
+PACKAGES = ("numpy", "h5py", "matplotlib", "Jinja2")
 
 
 def provenance(record: dict) -> dict[str, str]:

@@ -2,12 +2,18 @@
 
 from pathlib import Path
 
-from verification.report.charts import BLUE, DARK, GREY, figure_of
+from verification.report.canvas import BLUE, DARK, GREY, figure_of
 from verification.store.figures import Figures
 
 SUSPENSIONS = {"13_2d": "discs, 13 %", "13_3d": "spheres, 13 %", "dense_2d": "discs, 70 %, in contact",
                "dense_3d": "spheres, 55 %, in contact", "sizes_2d": "discs, radii 1:10", "sizes_3d": "spheres, radii 1:10"}
+ERROR = {"elinewidth": 0.8, "capsize": 2}  # of bars that show the range over rounds
 GOAL = 0.1  # share of solids at a fraction of 13 %
+
+
+def bars(off: list[tuple[float, float]]) -> list[list[float]]:
+    """Below and above, as matplotlib takes them."""
+    return [[low for low, _ in off], [high for _, high in off]]
 
 
 def costs_of_solids(figures: Figures, file: Path) -> None:
@@ -35,17 +41,16 @@ def _shares(axes, figures: Figures) -> None:
     axes.set_yticks(range(len(SUSPENSIONS)), SUSPENSIONS.values())
     axes.set_xlim(0, 1.12 * max(passed))
     axes.set_xlabel("per cent of a step")
-    axes.legend(frameon=False, fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
 
 
 def _costs(axes, figures: Figures) -> None:
     """Of a PP over one of the fluid alone, on one process and on two, a row a suspension."""
     for ranks, words, color, side in ((1, "one process", BLUE, -0.18), (2, "two", GREY, 0.18)):
         values = [figures.value("cost_per_pp_over_fluid", suspension=name, ranks=ranks) for name in SUSPENSIONS]
-        axes.barh([row + side for row in range(len(values))], values, 0.34, color=color, label=words)
-        for row, value in enumerate(values):
-            axes.text(value, row + side, f" {value:.2g}", va="center", fontsize=7)
+        off = [figures.off("cost_per_pp_over_fluid", suspension=name, ranks=ranks) for name in SUSPENSIONS]
+        axes.barh([row + side for row in range(len(values))], values, 0.34, color=color, label=words, xerr=bars(off), error_kw=ERROR)
+        for row, (value, (_, high)) in enumerate(zip(values, off, strict=True)):
+            axes.text(value + high, row + side, f" {value:.2g}", va="center", fontsize=7)
     axes.axvline(1.0, color=DARK, linewidth=1)
     axes.set_yticks(range(len(SUSPENSIONS)), [])
     axes.set_xlabel("cost of a PP over one of the fluid alone")
-    axes.legend(frameon=False, fontsize=8, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from verification.report.charts import BLUE, DARK, GREEN, GREY, RED, figure_of
-from verification.report.solid_charts import costs_of_solids
+from verification.report.canvas import BLUE, DARK, GREEN, GREY, RED, figure_of
+from verification.report.solid_charts import ERROR, bars, costs_of_solids
 from verification.store.figures import Figures, Setting
 
 FLUIDS = {"2d_39": "plane, 39 neighbours", "3d_77": "space, 77 neighbours"}
@@ -34,14 +34,16 @@ def _bars_of_codes(axes, figures: Figures, name: str) -> None:
     for side, (code, (words, color)) in zip((-0.3, -0.1, 0.1, 0.3), CODES.items(), strict=True):
         rates = {place: figures.get(name, fluid=fluid, code=code, ranks=ranks) for (fluid, ranks), place in places.items()}
         rates = {place: rate / 1e6 for place, rate in rates.items() if rate is not None}
-        axes.barh([place + side for place in rates], list(rates.values()), 0.19, color=color, label=words if rates else None)
+        off = {place: [part / 1e6 for part in figures.off(name, fluid=fluid, code=code, ranks=ranks)]
+               for (fluid, ranks), place in places.items()}
+        axes.barh([place + side for place in rates], list(rates.values()), 0.19, color=color, label=words if rates else None,
+                  xerr=bars([off[place] for place in rates]), error_kw=ERROR)
         for place, rate in rates.items():
-            axes.text(rate, place + side, f" {rate:.2g}", va="center", fontsize=7)
+            axes.text(rate + off[place][1], place + side, f" {rate:.2g}", va="center", fontsize=7)
     axes.set_yticks(list(places.values()), [f"{FLUIDS[fluid]}, {'one process' if ranks == 1 else 'two'}" for fluid, ranks in places],
                     fontsize=8)
     axes.invert_yaxis()
     axes.margins(x=0.12)
-    axes.legend(frameon=False, fontsize=7, loc="lower right")
 
 
 def _ranks_of(figures: Figures, name: str, **settings: Setting) -> list[int]:
@@ -70,11 +72,11 @@ def _efficiencies(axes, figures: Figures) -> None:
     for (scaling, fluid), (label, color, style) in sets.items():
         counts = _ranks_of(figures, "particle_steps_per_s", scaling=scaling, fluid=fluid)
         shares = [1.0] + [figures.value("efficiency", scaling=scaling, fluid=fluid, ranks=count) for count in counts[1:]]
-        axes.plot(counts, shares, style, color=color, markersize=4, linewidth=1.2, label=label)
+        off = [figures.off("efficiency", scaling=scaling, fluid=fluid, ranks=count) for count in counts]
+        axes.errorbar(counts, shares, yerr=bars(off), fmt=style, color=color, markersize=4, linewidth=1.2, label=label, **ERROR)
     _log2(axes, counts)
     axes.set_ylim(0, 1.1)
     axes.set_title("efficiency against one process", fontsize=9)
-    axes.legend(frameon=False, fontsize=7, loc="lower left")
 
 
 def _core_times(axes, figures: Figures) -> None:
@@ -93,7 +95,6 @@ def _core_times(axes, figures: Figures) -> None:
     axes.set_xticks(range(len(counts)), counts)
     axes.set_xlabel("processes")
     axes.set_title("core time of a PP and step (ns), 100 000 a process", fontsize=9)
-    axes.legend(frameon=False, fontsize=7, loc="upper left")
 
 
 def costs(figures: Figures, file: Path) -> None:
@@ -106,7 +107,6 @@ def costs(figures: Figures, file: Path) -> None:
         time.plot(counts, [alone / count for count in counts], "--", color=GREY, linewidth=1, label="without ghosts and messages")
         time.set_yscale("log")
         time.set_title("the paper's 5.6 million PPs: a step (ms)", fontsize=9)
-        time.legend(frameon=False, fontsize=8)
         shares = [figures.value("efficiency", system="paper", ranks=count) for count in counts]
         efficiency.plot(counts, shares, "o-", color=BLUE, markersize=4, linewidth=1.2)
         efficiency.set_ylim(0, 1.1)
@@ -133,7 +133,6 @@ def bounds(figures: Figures, file: Path) -> None:
         axes[0].set_yticks(range(len(LIMITS) + 2), ["the pass, measured", "order and lists, once a stay", *LIMITS.values()])
         axes[0].invert_yaxis()
         axes[1].tick_params(labelleft=False)
-        axes[1].legend(frameon=False, fontsize=8, loc="lower right")
 
 
 def _bars_of_pair(axes, figures: Figures, fluid: str) -> None:
@@ -164,15 +163,15 @@ def precisions(figures: Figures, file: Path) -> None:
         accuracy.set_yscale("log")
         accuracy.set_xlabel("spacing (in lengths of the case)")
         accuracy.set_title("difference over the answer", fontsize=9)
-        accuracy.legend(frameon=False, fontsize=6)
 
 
 def _speeds_of_precisions(axes, figures: Figures) -> None:
     rows = [(name, precision) for name in FLUIDS for precision in ("double", "single")]
     for row, (name, precision) in enumerate(rows):
         rate = figures.value("particle_steps_per_s", fluid=name, precision=precision, ranks=1) / 1e6
-        axes.barh(row, rate, 0.7, color=BLUE if precision == "double" else GREEN)
-        axes.text(rate, row, f" {rate:.3g}", va="center", fontsize=8)
+        off = [part / 1e6 for part in figures.off("particle_steps_per_s", fluid=name, precision=precision, ranks=1)]
+        axes.barh(row, rate, 0.7, color=BLUE if precision == "double" else GREEN, xerr=bars([off]), error_kw=ERROR)
+        axes.text(rate + off[1], row, f" {rate:.3g}", va="center", fontsize=8)
     axes.set_yticks(range(len(rows)), [f"{FLUIDS[name]}, {precision}" for name, precision in rows], fontsize=8)
     axes.invert_yaxis()
     axes.margins(x=0.1)

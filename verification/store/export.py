@@ -15,9 +15,9 @@ def _line(value) -> str:
     return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
 
 
-def _head(rows: int) -> dict:
+def _head(rows: int, number: int = FORMAT) -> dict:
     """The first line; the number of rows tells an export that was cut off."""
-    return {"store": "MaPPM", "format": FORMAT, "rows": rows}
+    return {"store": "MaPPM", "format": number, "rows": rows}
 
 
 def _row_line(table: str, row: dict) -> str:
@@ -48,7 +48,7 @@ def _rows(file: Path) -> Iterator[tuple[str, dict]]:
         try:
             entry = json.loads(line)
             if number == 1:
-                if entry != _head(len(lines) - 1):
+                if entry not in [_head(len(lines) - 1, known) for known in range(1, FORMAT + 1)]:
                     raise ValueError(f"the first line is not {_line(_head(len(lines) - 1))}, of so many rows as follow")
                 continue
             ((table, row),) = entry.items()

@@ -37,7 +37,7 @@ class Figures:
         others = {row.bench for row in self.rows} - {bench}
         if others:
             raise ValueError(f"{bench}: rows are of {', '.join(sorted(others))}")
-        self._values = {self._key(row.name, row.settings): row.value for row in self.rows}
+        self._rows = {self._key(row.name, row.settings): row for row in self.rows}
 
     @staticmethod
     def _key(name: str, settings: dict[str, Setting]) -> tuple[str, frozenset[tuple[str, Setting]]]:
@@ -52,7 +52,13 @@ class Figures:
 
     def get(self, name: str, **settings: Setting) -> float | None:
         """The value at just these settings, in the unit of its row; None where there is none."""
-        return self._values.get(self._key(name, settings))
+        found = self._rows.get(self._key(name, settings))
+        return None if found is None else found.value
+
+    def off(self, name: str, **settings: Setting) -> tuple[float, float]:
+        """How far the lowest and the highest of the rounds are from the value, both at least 0; 0 for what was found once."""
+        found = self._rows.get(self._key(name, settings))
+        return (0.0, 0.0) if found is None or found.low is None else (found.value - found.low, found.high - found.value)
 
     def value(self, name: str, **settings: Setting) -> float:
         """As get; throws NoFigure in place of None."""

@@ -44,8 +44,10 @@ def identity_of(code: Code) -> dict:
 
 
 def run_key(code: Code, scene: Mapping, steps: int | None = None, options: Mapping[str, str] = {}, cores: int = 1) -> str:
-    """Of a run. Cores are part of it only where a code does not promise equal bits on any number of them."""
-    parts = {"scene": canonical_scene(scene), "steps": steps if steps is not None else "end", "options": dict(options)}
-    if DIGEST not in code.capabilities:
+    """Of a run. Cores, and options that change the speed alone, are part of it only where a code does not promise equal bits."""
+    same_bits = DIGEST in code.capabilities
+    counted = {key: value for key, value in options.items() if not (same_bits and key in code.speed_options)}
+    parts = {"scene": canonical_scene(scene), "steps": steps if steps is not None else "end", "options": counted}
+    if not same_bits:
         parts["cores"] = cores
     return hash_of(identity_of(code) | parts)[:24]

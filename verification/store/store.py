@@ -18,7 +18,7 @@ from verification.protocol.errors import StoreError
 from verification.protocol.quantity import Measured
 
 APPLICATION = 0x4D615050  # marks a file as a store
-FORMAT = 1
+FORMAT = 2
 WAIT = 120.0  # seconds for another process that writes
 
 TABLES = """
@@ -33,8 +33,9 @@ CREATE TABLE costs (key TEXT, machine TEXT, cores INTEGER, made TEXT, core_secon
 CREATE TABLE matrices (key TEXT PRIMARY KEY, label TEXT, data TEXT, made TEXT, machine TEXT, source TEXT);
 CREATE TABLE refusals (key TEXT PRIMARY KEY, label TEXT, code TEXT, reason TEXT);
 CREATE TABLE figures (bench TEXT, settings TEXT, name TEXT, value REAL, unit TEXT, made TEXT, machine TEXT, source TEXT,
-                      command TEXT, PRIMARY KEY (bench, settings, name));
+                      command TEXT, low REAL, high REAL, PRIMARY KEY (bench, settings, name));
 """
+LATER = {1: ("ALTER TABLE figures ADD COLUMN low REAL", "ALTER TABLE figures ADD COLUMN high REAL")}  # makes of a format the next
 EXPORTED = ("runs", "measured", "costs", "matrices", "refusals", "figures")  # what git may hold; files and charts stay here
 
 
@@ -100,9 +101,16 @@ class Figure:
     bench: str
     settings: dict[str, str | int | float]
     name: str
-    value: float
+    value: float  # the median over rounds, where there were several
     made: Made
     unit: str = ""
+    low: float | None = None  # over the rounds; None for what was found once
+    high: float | None = None
+
+    @property
+    def words(self) -> str:
+        """Value, and range over the rounds."""
+        return f"{self.value:.4g}" + ("" if self.low is None else f" ({self.low:.4g} to {self.high:.4g})")
 
 
 def _number(value: float | None) -> float:
@@ -136,12 +144,24 @@ class Store:
             self._connection.execute(f"PRAGMA user_version = {FORMAT}")
         self._connection.execute("COMMIT")
 
+    def _bring_up_to_date(self) -> None:
+        """A file of an older format, all or nothing; another process may have been first."""
+        self._connection.execute("BEGIN IMMEDIATE")
+        (number,) = self._connection.execute("PRAGMA user_version").fetchone()
+        for older in range(number, FORMAT):
+            for statement in LATER[older]:
+                self._connection.execute(statement)
+        self._connection.execute(f"PRAGMA user_version = {FORMAT}")
+        self._connection.execute("COMMIT")
+
     def _check(self) -> None:
         (mark,) = self._connection.execute("PRAGMA application_id").fetchone()
         (number,) = self._connection.execute("PRAGMA user_version").fetchone()
         if mark != APPLICATION:
             raise StoreError(f"{self.file}: is a database of something else; name another file")
-        if number != FORMAT:
+        if number in LATER:
+            self._bring_up_to_date()
+        elif number != FORMAT:
             raise StoreError(f"{self.file}: is a store of format {number}, and this program writes format {FORMAT}; export it "
                              "with the program that made it, and import that into a new file")
 
@@ -299,15 +319,15 @@ class Store:
         """In place of all earlier figures of the same benchmarks."""
         figures = list(figures)
         rows = [(one.bench, _text(one.settings), one.name, one.value, one.unit, one.made.made, one.made.machine, one.made.source,
-                 one.made.command) for one in figures]
+                 one.made.command, one.low, one.high) for one in figures]
         with self._change() as change:
             change.executemany("DELETE FROM figures WHERE bench = ?", [(bench,) for bench in {one.bench for one in figures}])
-            change.executemany("INSERT INTO figures VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", rows)
+            change.executemany("INSERT INTO figures VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", rows)
 
     def figures(self, bench: str | None = None) -> list[Figure]:
         rows = self._rows("SELECT * FROM figures WHERE bench = ?1 OR ?1 IS NULL ORDER BY rowid", bench)
-        return [Figure(name_of, json.loads(settings), name, _number(value), Made(*made), unit)
-                for name_of, settings, name, value, unit, *made in rows]
+        return [Figure(name_of, json.loads(settings), name, _number(value), Made(*made), unit, low, high)
+                for name_of, settings, name, value, unit, *made, low, high in rows]
 
     # As a whole.
 

@@ -227,8 +227,8 @@ def _converge(case: Case, outcome: Outcome) -> Outcome:
     observable = outcome.observable
     noise = max((math.sqrt(2) * factor_of(freedom) * outcome.sources[source] for source, freedom in outcome.freedom.items()), default=0.0)
     explained = COVERAGE * math.hypot(*outcome.sources.values(), observable.uncertainty, observable.input)
-    found = converge(outcome.spacings, [level.value for level in outcome.levels], observable.reference, observable.uncertainty == 0.0,
-                     noise, explained, outcome.band)
+    found = converge(outcome.spacings, [level.value for level in outcome.levels], observable.reference,
+                     COVERAGE * observable.uncertainty, noise, explained, outcome.band)
     source = "resolution" if case.refined == "spacing" else "step"
     return replace(outcome, convergence=found, sources={source: found.estimate.bound / COVERAGE} | outcome.sources)
 

@@ -182,6 +182,11 @@ def _grows(h: Sequence[float], values: Sequence[float], noise: float) -> bool:
     return True
 
 
+def _approaches(errors: Sequence[float]) -> bool:
+    """Each level is nearer to the reference: whatever its differences do, such a sequence does not diverge."""
+    return bool(np.all(np.diff(np.abs(errors)) < 0))
+
+
 def _leaves(errors: Sequence[float], explained: float) -> bool:
     """Each level is farther from the reference, in all by more than is explained by what is not refined."""
     away = np.abs(errors)
@@ -193,25 +198,30 @@ class Convergence:
     """What the levels show, one of the four words above, and the estimate of their error."""
 
     state: str  # empty below three levels
-    order: float  # of the errors where the reference is exact and they have one sign, else of the differences of levels
+    order: float  # of the errors where the reference is sharp and they have one sign, else of the differences of levels
     estimate: Estimate
 
 
-def converge(h: Sequence[float], values: Sequence[float], reference: float, exact: bool, noise: float = 0.0, explained: float = 0.0,
-             band: tuple[float, float] = BAND) -> Convergence:
-    """At least two levels. `noise` is by how much two of equal levels may differ, from several starts; `explained` is how far from the
-    reference a limit may be by all that is not refined: the reference itself, the step, the sound speed. Both 95 %, absolute."""
+SHARP = 0.1  # of the smallest error: the uncertainty of a reference whose errors tell an order
+
+
+def converge(h: Sequence[float], values: Sequence[float], reference: float, uncertainty: float, noise: float = 0.0,
+             explained: float = 0.0, band: tuple[float, float] = BAND) -> Convergence:
+    """At least two levels. `uncertainty` is that of the reference; `noise` is by how much two of equal levels may differ, from several
+    starts; `explained` is how far from the reference a limit may be by all that is not refined: the reference itself, the step, the
+    sound speed. All 95 %, absolute."""
     found = estimate(h, values)
     if len(values) < 3:
         return Convergence("", math.nan, found)
     errors = [value - reference for value in values]
     through_zero = min(errors) < 0 < max(errors)  # then their size tells no order
-    order = error_order(h, errors) if exact and not through_zero else found.order
+    sharp = uncertainty <= SHARP * min(map(abs, errors))
+    order = error_order(h, errors) if sharp and not through_zero else found.order
     if not all(map(math.isfinite, errors)):
         return Convergence(NOT_CONVERGING, math.nan, found)
     if not any(errors):
         return Convergence(CONVERGING, math.nan, found)
-    if _leaves(errors, max(noise, explained)) or _grows(h, values, noise):
+    if _leaves(errors, max(noise, explained)) or (_grows(h, values, noise) and not _approaches(errors)):
         return Convergence(DIVERGING, order, found)
     if band[0] <= order <= band[1]:
         return Convergence(CONVERGING, order, found)

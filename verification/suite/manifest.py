@@ -25,6 +25,7 @@
     tier = "full"                   # that of the case if left out
     cost = 20                       # likewise
     unbanded = { since = 2026-11-22, why = "why" }  # here no band need be met, from that day on; may be left out
+    explained = "why it misses its goal"  # as of an observable, of this point alone; explained_goal comes with it
 
     [case.live]                     # a reference code, run after the code that is judged: an adapter of verification/codes
     code = "openfoam"
@@ -98,7 +99,7 @@ from verification.codes.code import all_codes
 from verification.protocol.capability import CAPABILITIES
 from verification.protocol.errors import CaseError
 from verification.protocol.machine import ROOT
-from verification.suite.case import CHAPTERS, OTHER, REFINED, TIERS, Beside, Case, Level, Live, Observable, Retired, Standard, Vary
+from verification.suite.case import CHAPTERS, REFINED, TIERS, Beside, Case, Level, Live, Observable, Retired, Standard, Vary
 from verification.suite.ladder import BAND
 from verification.suite.parameters import derived, read_parameters, scene_of, split
 
@@ -210,9 +211,17 @@ def _retired(table: dict, where: str) -> Retired:
     return Retired(name, symbol, standard, _earlier(table, standard, where), _day(table, "until", where), reason)
 
 
+EXPLAINED = ("explained", "explained_goal")
+
+
+def _explanation(table: dict, where: str) -> dict:
+    return {"explained": " ".join(_entry(table, "explained", str, where, "").split()),
+            "explained_goal": _entry(table, "explained_goal", NUMBER, where, 0.0 if "explained" not in table else None)}
+
+
 def _observable(table: dict, where: str) -> Observable:
     kinds = {"name": str, "symbol": str}
-    _only(table, (*kinds, *REFERENCES, *STANDARD, "earlier", "uncertainty", "source", "input", "needs", "explained", "explained_goal"), where)
+    _only(table, (*kinds, *REFERENCES, *STANDARD, "earlier", "uncertainty", "source", "input", "needs", *EXPLAINED), where)
     standard = _standard(table, where)
     if standard.order and not (BAND[0] <= standard.order[0] and standard.order[1] <= BAND[1]):
         raise CaseError(f"{where}.order = {table['order']!r}: beyond {list(BAND)}, what theory can give of a method of second order")
@@ -224,8 +233,7 @@ def _observable(table: dict, where: str) -> Observable:
         why=standard.why,
         earlier=_earlier(table, standard, where),
         needs=_needs(table, where),
-        explained=" ".join(_entry(table, "explained", str, where, "").split()),
-        explained_goal=_entry(table, "explained_goal", NUMBER, where, 0.0 if "explained" not in table else None),
+        **_explanation(table, where),
         input=_entry(table, "input", NUMBER, where, 0.0),
         order=standard.order,
         extrapolated=standard.extrapolated,
@@ -303,6 +311,11 @@ def _unbanded(table: dict, where: str) -> _Unbanded | None:
     return _Unbanded(_day(entry, "since", at), " ".join(_entry(entry, "why", str, at).split()))
 
 
+def _of_point(observable: Observable, unbanded: _Unbanded | None, table: dict, where: str) -> Observable:
+    made = _without_band(observable, unbanded) if unbanded else observable
+    return replace(made, **_explanation(table, where)) if EXPLAINED[0] in table else made
+
+
 def _without_band(observable: Observable, unbanded: _Unbanded) -> Observable:
     """As its manifest has it, and from a day on without a band."""
     if observable.order is None:
@@ -316,7 +329,7 @@ def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
     found = []
     for i, table in enumerate(tables):
         at = f"{where}.point[{i}]"
-        _only(table, ("name", "set", "tier", "cost", "unbanded"), at)
+        _only(table, ("name", "set", "tier", "cost", "unbanded", *EXPLAINED), at)
         base = _texts(table, "set", at)
         unbanded = _unbanded(table, at)
         try:
@@ -330,7 +343,7 @@ def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
             tier=_choice(table, "tier", TIERS, at, case.tier), cost=_cost(table, at, case.cost),
             levels=tuple(replace(level, overrides=base + level.overrides) for level in case.levels),
             remark=unbanded.why if unbanded else case.remark,
-            observables=tuple(_without_band(one, unbanded) for one in case.observables) if unbanded else case.observables,
+            observables=tuple(_of_point(one, unbanded, table, at) for one in case.observables),
         ))
     if len({point.name for point in found}) < len(found):
         raise CaseError(f"{where}.point: two points have the same name; rename one")
@@ -392,7 +405,7 @@ def read_cases(file: Path) -> list[Case]:
         purpose=" ".join(_entry(table, "purpose", str, where).split()),
         tier=_choice(table, "tier", TIERS, where),
         cost=_cost(table, where),
-        chapter=_choice(table, "chapter", CHAPTERS, where, OTHER),
+        chapter=_choice(table, "chapter", CHAPTERS, where, CHAPTERS[-1]),
         section=_entry(table, "section", str, where, ""),
         equations=_texts(table, "equations", where, []),
         refined=_choice(table, "refined", REFINED, where, "spacing"),
