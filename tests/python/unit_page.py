@@ -113,10 +113,10 @@ def test_the_matrix_says_what_a_case_has_and_what_none_has() -> None:
 
 
 def test_cells_carry_the_words_of_their_column() -> None:
-    head, wide = "<tr><th>case</th><th>k u<sub>val</sub></th></tr>", '<tr><td colspan="2">x</td></tr>'
-    page = f'<p><table class="a">{head}<tr><td>one</td><td>2</td></tr>{wide}</table>'
-    assert labelled(page) == (f'<p><table class="a"><thead>{head}</thead><tbody><tr><td data-label="case">one</td>'
-                              f'<td data-label="k uval">2</td></tr>{wide}</tbody></table>')
+    head, row = "<tr><th>case</th><th>k u<sub>val</sub></th><th>tier</th></tr>", "<tr><td>one</td><td>2</td><td>full</td></tr>"
+    page = f'<p><table class="a">{head}{row}<tr><td colspan="2">x</td><td>full</td></tr></table>'
+    assert labelled(page) == (f"""<p><table style="--c1:'case';--c2:'k uval';--c3:'tier'" class="a"><thead>{head}</thead><tbody>{row}"""
+                              '<tr><td colspan="2">x</td><td data-label="tier">full</td></tr></tbody></table>')
     headless = "<table><tr><th>key</th><td>value</td></tr></table>"
     assert labelled(headless) == headless
 

@@ -1,4 +1,8 @@
-"""Tables that a phone shows as cards: every cell gets the words of its column."""
+"""Tables that a phone shows as cards: every cell gets the words of its column.
+
+The words stand once, in a style of the table (`--c1`, `--c2`, ...), from which page.css writes them before the cells. A cell
+that comes after one over several columns is no longer the child of that number, and carries its words itself.
+"""
 
 import re
 
@@ -8,7 +12,7 @@ CELL = re.compile(r"<t([hd])\b([^>]*)>(.*?)(?=</t[hd]>)", re.DOTALL)
 
 
 def _words(html: str) -> str:
-    return " ".join(re.sub(r"<[^>]*>", "", html).split()).replace('"', "&quot;")
+    return " ".join(re.sub(r"<[^>]*>", "", html).split()).replace('"', "&quot;").replace("'", "")
 
 
 def _span(attributes: str) -> int:
@@ -17,14 +21,15 @@ def _span(attributes: str) -> int:
 
 
 def _labelled_row(row: str, labels: list[str]) -> str:
+    if "colspan" not in row:
+        return row
     place = 0
 
     def cell(found: re.Match) -> str:
         nonlocal place
         label, span = labels[place] if place < len(labels) else "", _span(found[2])
         place += span
-        named = f' data-label="{label}"' if label and found[1] == "d" and span == 1 else ""
-        return f"<t{found[1]}{found[2]}{named}>{found[3]}"
+        return f"<t{found[1]}{found[2]}" + (f' data-label="{label}">' if label and span == 1 else ">") + found[3]
 
     return CELL.sub(cell, row)
 
@@ -36,11 +41,13 @@ def _labelled_table(found: re.Match) -> str:
         return table  # without a head
     labels = [_words(content) for _, attributes, content in CELL.findall(rows[0]) for _ in range(_span(attributes))]
     start = table.index(rows[0])
-    body = table[start + len(rows[0]) :].removesuffix("</table>")
-    return (f"{table[:start]}<thead>{rows[0].rstrip()}</thead><tbody>"
-            f"{ROW.sub(lambda row: _labelled_row(row[0], labels), body + '</table>').removesuffix('</table>')}</tbody></table>")
+    body = table[start + len(rows[0]) :].removesuffix("</table>") + "</table>"
+    labelled_body = ROW.sub(lambda row: _labelled_row(row[0], labels), body).removesuffix("</table>")
+    style = ";".join(f"--c{k}:'{label}'" for k, label in enumerate(labels, start=1) if label)
+    opened = table[:start].replace("<table", f'<table style="{style}"', 1)
+    return f"{opened}<thead>{rows[0].rstrip()}</thead><tbody>{labelled_body}</tbody></table>"
 
 
 def labelled(page: str) -> str:
-    """The page, with heads of tables marked as such and a `data-label` at every cell below them."""
-    return TABLE.sub(_labelled_table, page)
+    """The page, with heads of tables marked as such, the words of columns known to their cells, and no indentation of tags."""
+    return re.sub(r"\n\s+(?=<)", "\n", TABLE.sub(_labelled_table, page))

@@ -43,14 +43,15 @@ class Family:
 
     @cached_property
     def drawn(self) -> tuple[str, ...]:
-        """Names of the cases that get pictures: of many points those that do not hold, and the one that is the furthest off."""
+        """Names of the cases that get pictures: of many points the furthest that do not hold, or the furthest of all."""
         if len(self.results) <= LISTED:
             return tuple(result.case.name for result in self.results)
-        furthest = max(self.results, key=lambda result: max(map(_distance, result.outcomes), default=0.0))
-        return tuple(result.case.name for result in self.results if result is furthest or not result.holds)
+        by_distance = sorted(self.results, key=lambda result: -max(map(_distance, result.outcomes), default=0.0))
+        failed = [result for result in by_distance if not result.holds][:LISTED]
+        return tuple(result.case.name for result in failed or by_distance[:1])
 
 
-LISTED = 3  # points of a family that are listed one by one in tables of all cases
+LISTED = 3  # points of a family that are listed one by one in tables of all cases, and that have pictures
 
 
 @dataclass(frozen=True)

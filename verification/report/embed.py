@@ -11,8 +11,8 @@ from urllib.parse import quote
 from markupsafe import Markup
 from PIL import Image
 
-QUALITY = 86  # of WebP
-WIDEST = 1500  # pixels that a field is embedded with
+QUALITY = 80  # of WebP
+WIDEST, WIDE = 900, 1200  # pixels of a field; of one that takes the whole width of the page
 SAFE = " <>=:;/',()-._~!*+@?$|[]{}"  # in an address within double quotes
 UNUSED = r' id="(?:figure|axes|patch|line2d|text|matplotlib|xtick|ytick|legend)[\w.]*"'  # ids that nothing refers to
 
@@ -57,7 +57,7 @@ def embedded(file: Path) -> Markup:
         return Markup("data:image/svg+xml," + quote(smaller(file.read_text()).replace('"', "'"), safe=SAFE))
     buffer = io.BytesIO()
     picture = Image.open(file)
-    picture.thumbnail((WIDEST, WIDEST))
+    picture.thumbnail((WIDE, WIDE) if picture.width > 2 * picture.height else (WIDEST, WIDEST))
     picture.save(buffer, "WEBP", quality=QUALITY)
     return Markup("data:image/webp;base64," + base64.b64encode(buffer.getvalue()).decode())
 
