@@ -13,10 +13,11 @@ import numpy as np
 from verification.report.chapters import Chapter, tier_of
 from verification.report.charts import DARK, GREY, figure_of
 from verification.report.figure import Figure, csv_of
+from verification.suite.case import CHAPTERS
 from verification.suite.judge import CODE_TO_CODE, INCONCLUSIVE, SKIPPED, Outcome
 
-MARKS = "os^Dv<>Ph"
-COLOURS = ("#5b4b8a", "#1f5a96", "#2a8c82", "#17663a", "#b8860b", "#c65102", "#888888", "#b00020", "#333333")
+COLOURS = ("#333333", "#5b4b8a", "#1f5a96", "#2a8c82", "#17663a", "#b8860b", "#888888", "#b00020", "#c65102")
+LOOKS = dict(zip(CHAPTERS, zip("hos^Dv<P>", COLOURS, strict=True), strict=True))  # mark and colour of each chapter
 EDGE = 10.0  # per cent: what lies further off is drawn at the edge
 
 
@@ -78,7 +79,8 @@ def classes_of(chapters: list[Chapter]) -> list[Class]:
 
 def _marks(axes, classes: list[Class], height) -> None:
     """`height` of every point; filled where it can validate, hollow where it is code to code."""
-    for one, mark, colour in zip(classes, MARKS, COLOURS, strict=False):
+    for one in classes:
+        mark, colour = LOOKS[one.name]
         for judged in (True, False):
             points = [point for point in one.points if (point.outcome.verdict != CODE_TO_CODE) == judged]
             label = one.name if judged or one.code_to_code == len(one.points) else None
