@@ -74,20 +74,24 @@ def test_every_link_within_the_page_has_its_target(tab: Browser, page: Path) -> 
 def test_a_link_unfolds_the_case_it_leads_to(tab: Browser, page: Path) -> None:
     tab.open(page, 1280)
     assert tab.value("document.getElementById('shear_wave_k2').checkVisibility()") is False
-    tab.value("new Promise(done => { addEventListener('hashchange', () => setTimeout(done, 0)); location.hash = 'shear_wave_k2'; })")
+    tab.value("""new Promise(done => {
+      addEventListener('hashchange', () => setTimeout(done, 0));
+      location.hash = 'shear_wave_k2';
+    })""")
     assert tab.value("document.getElementById('shear_wave_k2').open && document.getElementById('shear_waves').open")
 
 
+TYPE = "{ const box = document.querySelector('.filter input'); box.value = '%s'; box.dispatchEvent(new Event('input')); }"
 SHOWN = "[...document.querySelectorAll('tr.row')].filter(row => !row.hidden).map(row => row.textContent)"
 
 
 def test_rows_are_filtered_by_words_and_by_verdicts(tab: Browser, page: Path) -> None:
     tab.open(page, 1280)
     everything = len(tab.value(SHOWN))
-    tab.value("{ const box = document.querySelector('.filter input'); box.value = 'SHEAR k2'; box.dispatchEvent(new Event('input')); }")
+    tab.value(TYPE % "SHEAR k2")
     found = tab.value(SHOWN)
     assert 0 < len(found) < everything and all("shear_wave_k2" in text for text in found)
-    tab.value("{ const box = document.querySelector('.filter input'); box.value = ''; box.dispatchEvent(new Event('input')); }")
+    tab.value(TYPE % "")
     assert len(tab.value(SHOWN)) == everything
     tab.value("document.querySelector('.filter button[value=FAILED]').click()")
     found = tab.value(SHOWN)

@@ -115,7 +115,8 @@ def test_the_matrix_says_what_a_case_has_and_what_none_has() -> None:
 def test_cells_carry_the_words_of_their_column() -> None:
     head, row = "<tr><th>case</th><th>k u<sub>val</sub></th><th>tier</th></tr>", "<tr><td>one</td><td>2</td><td>full</td></tr>"
     page = f'<p><table class="a">{head}{row}<tr><td colspan="2">x</td><td>full</td></tr></table>'
-    assert labelled(page) == (f"""<p><table style="--c1:'case';--c2:'k uval';--c3:'tier'" class="a"><thead>{head}</thead><tbody>{row}"""
+    style = "--c1:'case';--c2:'k uval';--c3:'tier'"
+    assert labelled(page) == (f'<p><table style="{style}" class="a"><thead>{head}</thead><tbody>{row}'
                               '<tr><td colspan="2">x</td><td data-label="tier">full</td></tr></tbody></table>')
     headless = "<table><tr><th>key</th><td>value</td></tr></table>"
     assert labelled(headless) == headless
@@ -127,8 +128,8 @@ def test_a_picture_is_embedded_small_and_whole(tmp_path: Path) -> None:
     assert smaller(svg) == ('<svg xmlns="http://www.w3.org/2000/svg" width="72pt" height="36pt"><path id="kept" '
                             'd="M1.23 2.0L4 0 " style="font-family: DejaVu Sans,sans-serif"/></svg> ')
     twice = '<svg a="1"><path style="fill: red; x: 1"/><g clip-path="url(#c)"><path style="fill: red; x: 1"/></g></svg>'
-    assert smaller(twice) == ('<svg a="1"><style>.s0{fill:red;x:1}</style><path class="s0"/><g clip-path="url(#c)"><path class="s0"/>'
-                              '</g></svg>')
+    assert smaller(twice) == ('<svg a="1"><style>.s0{fill:red;x:1}</style><path class="s0"/>'
+                              '<g clip-path="url(#c)"><path class="s0"/></g></svg>')
     (tmp_path / "a.svg").write_text(svg)
     address = embedded(tmp_path / "a.svg")
     assert address.startswith("data:image/svg+xml,<svg xmlns='http") and '"' not in address and "#" not in address

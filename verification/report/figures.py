@@ -113,8 +113,10 @@ def suite_figures(rows: list[tuple[str, Outcome]], history: list[dict], out: Pat
     """The overview (also as PNG, for the summary) of (name, outcome), and the trend where there is an earlier report."""
     shown = [(name, outcome) for name, outcome in rows if outcome.observable.goal > 0 and outcome.verdict != SKIPPED]
     caption = f"Error over goal of {len(shown)} rows, with k u as bars. Inside the band is within the goal."
-    over_goal = [(name, one.observable.against, one.error / one.observable.goal, one.bound / one.observable.goal) for name, one in shown]
-    overview = Figure(out / "overview.svg", caption, csv_of(("case", "observable", "error over goal", "k u over goal"), over_goal))
+    over_goal = [(name, one.observable.against, one.error / one.observable.goal, one.bound / one.observable.goal)
+                 for name, one in shown]
+    data = csv_of(("case", "observable", "error over goal", "k u over goal"), over_goal)
+    overview = Figure(out / "overview.svg", caption, data)
     suite_charts.overview(rows, overview.file)
     suite_charts.overview(rows, out / "overview.png")
     found = {"overview": overview}
