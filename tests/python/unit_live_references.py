@@ -366,7 +366,7 @@ def test_the_points_of_a_family_are_drawn_together(tmp_path: Path) -> None:
     errors, alone = (chart_of(kept_chart(chart)) for chart in drawn)
     assert errors.curves[0].y == pytest.approx(np.full(3, 2.0)) and errors.curves[0].error == pytest.approx(np.full(3, 2.0))
     assert alone.curves[-1].y == pytest.approx(1.02, abs=0.01)
-    assert [file.name for file in family_figures(results, tmp_path)] == ["sphere_stokes_family0.svg", "sphere_stokes_family1.svg"]
+    assert [one.file.name for one in family_figures(results, tmp_path)] == ["sphere_stokes_family0.svg", "sphere_stokes_family1.svg"]
     assert all((tmp_path / f"sphere_stokes_family{i}.svg").exists() for i in range(2))
     assert family_figures(results[:1], tmp_path) == ()
 

@@ -8,8 +8,8 @@ import pytest
 
 from verification.protocol.points import write_points
 from verification.protocol.run import Run
-from verification.report.chapters import chapters_of, families_of
-from verification.report.figures import CaseFigures
+from verification.report.chapters import families_of
+from verification.report.reference_codes import reference_codes
 from verification.report.side_by_side import NODES, apart, caption, compare_fields, speeds
 from verification.suite.references import Reference
 
@@ -73,16 +73,14 @@ def result(name: str, holds: bool, code: str = "", rows: int = 1) -> SimpleNames
     return SimpleNamespace(case=case, holds=holds, live=live, outcomes=outcomes)
 
 
-def test_families_that_fail_come_first_and_chapters_gather_the_rows_of_a_code(tmp_path: Path) -> None:
+def test_families_that_fail_come_first_and_rows_are_gathered_by_code() -> None:
     results = [result("a", True), result("b.2", True, "openfoam"), result("b.1", False, "openfoam"),
                result("c", True, "liggghts"), result("peer", True, "liggghts", rows=0)]
     families = families_of(results)
     assert [family.name for family in families] == ["b", "a", "c", "peer"]
     assert [one.case.name for one in families[0].results] == ["b.1", "b.2"]
-    figures = {one.case.name: CaseFigures(None, (), tmp_path / one.case.name) for one in results}
-    openfoam, liggghts = chapters_of(results, figures, families)
+    openfoam, liggghts = reference_codes(results)
     assert (openfoam.code, openfoam.id, len(openfoam.rows)) == ("Openfoam", "openfoam", 2)
-    assert openfoam.pictures == (tmp_path / "b.1",)  # one of a family
     assert [one.case.name for one in liggghts.shown] == ["peer"]
 
 

@@ -105,6 +105,7 @@ def test_every_case_has_a_sound_manifest() -> None:
         ("", "case: missing; add a table"),
         ('[case]\ntier = "quick"\ncost = 1', "case.purpose: missing"),
         ('[case]\npurpose = "p"\ntier = "slow"\ncost = 1', "case.tier = 'slow': unknown; known are quick, full"),
+        ('[case]\npurpose = "p"\nchapter = "wals"\ntier = "quick"\ncost = 1', "case.chapter = 'wals': unknown; known are rest and bits, "),
         ('[case]\npurpose = "p"\ntier = "quick"\ncost = "1"', "case.cost = '1': wrong type"),
         ('[case]\npurpose = "p"\ntier = "quick"\ncost = 1\ncolour = 2', "case.colour: unknown"),
     ],

@@ -13,23 +13,28 @@ from verification.protocol.errors import StoreError
 from verification.protocol.machine import ROOT
 from verification.report.chapters import chapters_of, families_of, rows_of
 from verification.report.figures import CaseFigures, case_figures, family_figures, shown_figures, suite_figures
+from verification.report.front import classes_of, front_figures
 from verification.report.headline import Headline, changes_of_standards, headline
 from verification.report.history import changes, errors_of, read_history
+from verification.report.matrix import matrix_of
 from verification.report.page import write_page, write_summary
 from verification.report.provenance import checksum, provenance, reference_checksums
+from verification.report.reference_codes import reference_codes
 from verification.report.speed_charts import CHARTS
 from verification.store.export import export, import_into
 from verification.store.figures import Figures, benches_of
 from verification.store.laboratory import Laboratory
 from verification.store.store import Store, StoredRun
 from verification.suite.judge import SKIPPED
+from verification.suite.manifest import all_cases
 from verification.suite.result import CaseResult, collect
 from verification.suite.stale import Stale, stale_of
 from verification.suite.table import table
-from verification.suite.tier import SHOWN, SHOWN_STEPS, cases_of, shown_request, subject
+from verification.suite.tier import SHOWN, SHOWN_RANKS, SHOWN_STEPS, cases_of, shown_request, subject
 
 PUBLISHED = ROOT / "reports" / "published"
 STORE = PUBLISHED / "store.jsonl"
+SHOWN_COMMAND = f"mpirun -np {SHOWN_RANKS} mappm run cases/{SHOWN}/case.toml --steps {{steps}}"
 STORED = {"mutation": "mutation.json", "robustness": "robustness.json"}  # made by commands of their own
 
 
@@ -158,31 +163,37 @@ def draw_report(laboratory: Laboratory, tier: str, page: Path, publish: bool) ->
     origin = provenance(shown.record)
     entry = _results_json(tier, origin, results)
     history = read_history(PUBLISHED / "history.json")
-    figures: dict[str, CaseFigures] = {result.case.name: case_figures(laboratory, result, page) for result in results}
     families = [replace(family, charts=family_figures(list(family.results), page)) for family in families_of(results)]
-    chapters = chapters_of(results, figures, families)
-    rows = rows_of(families)
+    drawn = {name for family in families for name in family.drawn}
+    figures = {result.case.name: case_figures(laboratory, result, page) if result.case.name in drawn else CaseFigures()
+               for result in results}
+    chapters, codes = chapters_of(families), reference_codes(results)
+    rows = rows_of([family for chapter in chapters for family in chapter.families])
+    classes = classes_of(chapters)
     suite = suite_figures([(row.name, row.outcome) for row in rows], [*history, entry], page)
     with laboratory.kept(shown.key) as run:
-        shown_pictures = shown_figures(run, page)
+        shown_pictures = shown_figures(run, SHOWN_COMMAND.format(steps=steps), page)
     stored, benches = _stored(), _benches(laboratory, shelf)
     speed_charts = {name: page / f"{name}.svg" for name in benches}
     for name, file in speed_charts.items():
         CHARTS[name](benches[name], file)
-    origin |= {chapter.code: chapter.version for chapter in chapters}
+    origin |= {code.code: code.version for code in codes}
     content = {
-        "tier": tier, "results": results, "figures": figures, "families": families, "chapters": chapters, "rows": rows, "suite": suite,
-        "shown_pictures": shown_pictures, "shown": SHOWN, "steps": steps, "record": shown.record, "shown_made": shown.made,
+        "tier": tier, "results": results, "figures": figures, "families": families, "chapters": chapters, "codes": codes,
+        "rows": rows, "suite": suite, "classes": classes, "front": front_figures(classes, page),
+        "matrix": matrix_of(all_cases()), "shown_pictures": shown_pictures, "shown": SHOWN, "steps": steps,
+        "record": shown.record, "shown_made": shown.made,
         "ledger": _ledger(shown.record), "stored": stored, "benches": benches, "speed_charts": speed_charts, "absent": absent,
         "headline": headline(results, absent, len(stale)), "standards": changes_of_standards(cases_of("full")),
-        "stale": stale, "table": table(laboratory), "changes": changes(history, entry["errors"]), "history": history, "provenance": origin,
-        "checksums": reference_checksums(), "took": str(timedelta(seconds=round(time.monotonic() - started))),
+        "stale": stale, "table": table(laboratory), "changes": changes(history, entry["errors"]), "history": history,
+        "provenance": origin, "checksums": reference_checksums(),
+        "took": str(timedelta(seconds=round(time.monotonic() - started))),
     }
     write_page(content, page / "index.html")
     write_summary(content, page / "summary.md")
     (page / "results.json").write_text(json.dumps(entry, indent=1) + "\n")
     if publish:
-        _publish(laboratory, page, [suite["overview"].with_suffix(".png"), shown_pictures["field"]], entry)
+        _publish(laboratory, page, [suite["overview"].file.with_suffix(".png"), shown_pictures["field"].file], entry)
     return _tell(content, page)
 
 

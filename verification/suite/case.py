@@ -8,6 +8,9 @@ from verification.bits.equivalence import Equivalence
 
 TIERS = ("quick", "full")
 REFINED = ("spacing", "step")
+OTHER = "other"  # chapter of a case that names none
+CHAPTERS = ("rest and bits", "waves and decay", "walls", "drag on fixed bodies", "moving bodies", "falling bodies", "contact",
+            "the gas-solid system", OTHER)  # of the report, in its order
 
 
 @dataclass(frozen=True)
@@ -119,6 +122,8 @@ class Case:
     purpose: str
     tier: str
     cost: float
+    chapter: str = OTHER
+    section: str = ""  # of that chapter, which cases may share; the family where empty
     equations: tuple[str, ...] = ()
     refined: str = "spacing"
     remark: str = ""  # on what the levels show

@@ -3,6 +3,8 @@
     [case]
     purpose = "one paragraph"
     equations = ["u = U sin(k y) exp(-nu k^2 t)"]   # what the flow obeys, a line each; may be left out
+    chapter = "waves and decay"     # of the report, one of CHAPTERS in case.py; "other" if left out
+    section = "shear waves"         # cases of one section stand together there; may be left out
     tier = "quick"                  # or "full"
     cost = 20                       # core-seconds of the quick tier, about
     refined = "spacing"             # or "step": what gets finer from level to level
@@ -97,7 +99,7 @@ from verification.codes.code import all_codes
 from verification.protocol.capability import CAPABILITIES
 from verification.protocol.errors import CaseError
 from verification.protocol.machine import ROOT
-from verification.suite.case import REFINED, TIERS, Beside, Case, Level, Live, Observable, Retired, Standard, Vary
+from verification.suite.case import CHAPTERS, REFINED, TIERS, Beside, Case, Level, Live, Observable, Retired, Standard, Vary
 from verification.suite.ladder import BAND
 from verification.suite.parameters import derived, read_parameters, scene_of, split
 
@@ -384,8 +386,8 @@ def read_cases(file: Path) -> list[Case]:
         raise CaseError(f"{file}: case: missing; add a table [case]")
     where = f"{file}: case"
     lists = {"observable": _observable, "retired": _retired, "level": _level, "vary": _vary, "beside": _beside}
-    _only(table, ("purpose", "equations", "tier", "cost", "refined", "remark", "equivalence", "live", "point", "parameters",
-                  "formulas", *lists), where)
+    _only(table, ("purpose", "chapter", "section", "equations", "tier", "cost", "refined", "remark", "equivalence", "live", "point",
+                  "parameters", "formulas", *lists), where)
     found = {key: _all_of(table, key, read, where) for key, read in lists.items()}
     for i, observable in enumerate(found["observable"]):
         if observable.order and len(found["level"]) < 3:
@@ -403,6 +405,8 @@ def read_cases(file: Path) -> list[Case]:
         purpose=" ".join(_entry(table, "purpose", str, where).split()),
         tier=_choice(table, "tier", TIERS, where),
         cost=_cost(table, where),
+        chapter=_choice(table, "chapter", CHAPTERS, where, CHAPTERS[-1]),
+        section=_entry(table, "section", str, where, ""),
         equations=_texts(table, "equations", where, []),
         refined=_choice(table, "refined", REFINED, where, "spacing"),
         remark=" ".join(_entry(table, "remark", str, where, "").split()),
