@@ -209,7 +209,7 @@ def charts_of_both(run: Run, other: Run) -> list[Chart]:
 
 
 MEASURES = Measures(
-    observables=by_name(terminal_velocity, terminal_over_exact, relaxation_over_exact, from_drag_law, from_stokes_flow),
+    observables=by_name(terminal_over_exact, relaxation_over_exact, from_drag_law, from_stokes_flow),
     figures=FIGURES,
     charts=curves,
     charts_of_both=charts_of_both,

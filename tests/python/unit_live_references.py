@@ -116,7 +116,7 @@ def test_points_are_found_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         ('code = "openfoam"', 'code = "fluent"', "code = 'fluent': unknown; known are"),
         ('"levels=8"', '"--levels", "8"', "case.live.quick: '--levels': write KEY=VALUE"),
         ("goal = 0.02", "goal = 0.02\nextrapolated = 0.01", "extrapolated: needs three levels"),
-        ("goal = 0.02", "goal = 0.02\nextrapolated = -0.01", "must not be negative"),
+        ("goal = 0.02", "goal = 0.02\nextrapolated = -0.01", "must be finite, and not be negative"),
     ],
 )
 def test_a_bad_entry_is_refused_with_its_fix(tmp_path: Path, old: str, new: str, message: str) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
@@ -17,9 +18,9 @@ from verification.protocol.quantity import Measured
 from verification.protocol.series import Table
 from verification.report.headline import changes_of_standards, of_families, standard_text
 from verification.report.history import changes
-from verification.store.store import Ledger
+from verification.store.store import Found, Ledger
 from verification.suite.case import Case, Observable, Standard, Vary
-from verification.suite.judge import CODE_TO_CODE, FAILED, INCONCLUSIVE, VALIDATED, WITHIN_GOAL, Outcome, _converge, _varied
+from verification.suite.judge import CODE_TO_CODE, FAILED, INCONCLUSIVE, VALIDATED, WITHIN_GOAL, Outcome, _converge, _varied, judge
 from verification.suite.ladder import CONVERGING, DIVERGING, NOT_CONVERGING
 from verification.suite.manifest import all_cases, read_cases
 from verification.suite.result import Exactness, exactness
@@ -134,7 +135,7 @@ def test_a_varied_source_is_extrapolated_by_its_order() -> None:
     # Starts: the scatter of all runs, 50.0 among them.
     assert _varied(Vary("disorder", (("a",), ("b",)), None, 1.0, seeds=True), 50.0, [50.1, 49.9]) == pytest.approx(0.1)
     # Other choices: anywhere in their range.
-    assert _varied(Vary("shift", (("a",), ("b",)), None, 1.0), 50.0, [50.3, 50.1]) == pytest.approx(0.15 / math.sqrt(3))
+    assert _varied(Vary("shift", (("a",), ("b",)), None, 1.0), 50.0, [50.3, 50.1]) == pytest.approx(0.3 / math.sqrt(3))
 
 
 MANIFEST = """
@@ -216,6 +217,12 @@ set = ["fluid.method=classic"]
         ('[[case.vary]]\nsource = "step"\nsets = [["a=1"]]\nratio = 1', "must be above 1"),
         ('[[case.vary]]\nsource = "start"\nseeds = [["a=1"], ["a=2"], ["a=3"]]', "4 starts in all; 5 are the fewest"),
         ('[[case.vary]]\nsource = "start"\nseeds = [["a=1"]]\nratio = 2', "ratio: does not go with seeds"),
+        ('[[case.vary]]\nsource = "start"\nseeds = [["a=1"], ["a=2"], ["a=3"], ["a=4"]]\nfrom_lattice = true', "4 starts in all"),
+        ('[[case.vary]]\nsource = "resolution"\nsets = [["a=1"]]\nratio = 2', "take another word"),
+        (2 * '[[case.vary]]\nsource = "step"\nsets = [["a=1"]]\nratio = 2\n', "two have the same source"),
+        (OBSERVABLE.replace("goal = 0.1", "goal = inf"), "must be finite"),
+        (OBSERVABLE.replace("uncertainty = 0.0", "uncertainty = inf"), "must be finite"),
+        (OBSERVABLE + "explained_goal = 0.2", "there is none; add explained"),
         (OBSERVABLE + "order = [1.0, 3.0]", "beyond [0.5, 2.5]"),
         (OBSERVABLE.replace("since = 2026-11-22", ""), "since: missing; add the day"),
         (OBSERVABLE.replace("2026-11-22", '"2026-11-22"'), "write a day, such as 2026-11-22, without quotes"),
@@ -225,7 +232,7 @@ set = ["fluid.method=classic"]
         ('[[case.level]]\nset = "a=1"', "wrong type"),
         ('[[case.level]]\nset = []\ntier = "slow"', "tier = 'slow': unknown"),
         (OBSERVABLE + "goal2 = 1", "goal2: unknown"),
-        (OBSERVABLE.replace("goal = 0.1", "goal = -0.1"), "must not be negative"),
+        (OBSERVABLE.replace("goal = 0.1", "goal = -0.1"), "must be finite, and not be negative"),
     ],
 )
 def test_a_bad_entry_is_refused_with_its_fix(tmp_path: Path, extra: str, message: str) -> None:
@@ -285,6 +292,47 @@ def test_a_miss_that_is_explained_has_failed_and_says_why() -> None:
     assert not unknown.passes
 
 
+def test_an_explanation_excuses_neither_divergence_nor_a_missed_band() -> None:
+    known = replace(GIVEN, goal=0.002, uncertainty=1e-6, explained="it is coarse", explained_goal=0.5)
+    diverges = judged_levels([50.0, 50.1, 50.4], known)
+    assert diverges.verdict == FAILED and diverges.state == DIVERGING and not diverges.passes
+    assert not judged_levels(of_order(0.6), replace(known, order=(1.5, 2.5))).passes
+
+
+def test_no_number_is_inconclusive_but_for_the_value_itself() -> None:
+    assert outcome(50.0, {"resolution": math.nan}).verdict == INCONCLUSIVE
+    assert outcome(50.0, {"step": 0.1}, replace(GIVEN, reference=math.nan)).verdict == INCONCLUSIVE
+    assert outcome(math.nan, {"step": 0.1}).verdict == FAILED
+    starts = outcome(50.0, {"disorder": math.nan}, freedom={"disorder": 4})
+    assert starts.verdict == INCONCLUSIVE and "no number" in starts.line
+
+
+def test_a_value_that_meets_its_reference_by_chance_is_not_validated_unresolved() -> None:
+    assert outcome(50.0, {"resolution": 5.0}).verdict == WITHIN_GOAL
+    assert outcome(50.0, {}).verdict == WITHIN_GOAL
+
+
+STARTS = """
+[[case.vary]]
+source = "disordered"
+seeds = [["a=1"], ["a=2"], ["a=3"], ["a=4"], ["a=5"]]
+from_lattice = true
+"""
+
+
+def test_the_mean_of_disordered_starts_is_judged_beside_the_lattice(tmp_path: Path) -> None:
+    """The lattice meets its goal of 10 %, all five starts miss it by 20: the scatter of these says nothing of the lattice."""
+    (case,) = read_cases(written(tmp_path, OBSERVABLE + STARTS))
+    values = {(): 1.02, ("a=1",): 1.19, ("a=2",): 1.21, ("a=3",): 1.2, ("a=4",): 1.18, ("a=5",): 1.22}
+    entries = {key: SimpleNamespace(scene={"fluid": {"spacing": 0.1}}, found=Found({"drag": Measured(value, 0.0)}))
+               for key, value in values.items()}
+    lattice, starts = judge(case, "quick", entries)
+    assert lattice.sources["lattice"] == pytest.approx(0.18) and lattice.sources["disordered"] == pytest.approx(0.0158, rel=0.01)
+    assert lattice.freedom == {"disordered": 4} and len(lattice.seeds["disordered"]) == 5
+    assert (starts.observable.symbol, starts.verdict) == ("F, disordered", FAILED) and starts.measured.value == pytest.approx(1.2)
+    assert starts.sources["mean of starts"] == pytest.approx(0.0158 / math.sqrt(5), rel=0.01)
+
+
 # --- the register of goals
 
 
@@ -336,3 +384,26 @@ def test_a_point_may_have_an_explanation_of_its_own(tmp_path: Path) -> None:
     assert other.observables[0].explained == ""
     with pytest.raises(CaseError, match=r"point\[0\].explained_goal: missing"):
         read_cases(written(tmp_path, OBSERVABLE + points.replace("explained_goal = 0.3\n", "")))
+
+
+def decided(case: Case) -> dict:
+    """All of a case that decides its verdicts, beside its scene and its measures."""
+    rows = [{"symbol": one.against, "name": one.name, "reference": one.reference, "uncertainty": one.uncertainty, "input": one.input,
+             "published": one.published, "live": one.live, "code_to_code": one.code_to_code, "needs": list(one.needs),
+             "standard": standard_text(one.standard), "explained_goal": one.explained_goal} for one in case.observables]
+    varied = [[vary.source, [list(chosen) for chosen in vary.sets], vary.ratio, vary.order, vary.seeds, vary.from_lattice] for vary in case.vary]
+    live = [case.live.code, case.live.problem, list(case.live.quick), list(case.live.full)] if case.live else []
+    return {"case": case.name, "tier": case.tier, "refined": case.refined, "observables": rows, "live": live, "vary": varied,
+            "levels": [[list(level.overrides), level.tier] for level in case.levels]}
+
+
+def test_what_decides_a_verdict_is_changed_on_purpose() -> None:
+    """decided.jsonl holds it, a line a case or a point, so that a changed reference, uncertainty, level or explanation is seen in
+    two places. MAPPM_DECIDED=write writes it anew."""
+    file = Path(__file__).parent / "decided.jsonl"
+    now = [json.dumps(decided(case), ensure_ascii=False) for case in sorted(all_cases(), key=lambda case: case.name)]
+    if os.environ.get("MAPPM_DECIDED") == "write":
+        file.write_text("\n".join(now) + "\n")
+    kept = file.read_text().splitlines()
+    apart = [json.loads(line)["case"] for line in set(kept) ^ set(now)]
+    assert not apart, f"{', '.join(sorted(set(apart)))}: what decides verdicts has changed; if that is meant, MAPPM_DECIDED=write"

@@ -28,7 +28,7 @@ class Headline:
     def text(self) -> str:
         """One line."""
         counts = ", ".join(f"{number} {verdict}" for verdict, number in self.verdicts.items() if number)
-        more = ((self.explained, "of the failed explained"), (len(self.unjudged), "cases without a verdict on a value"),
+        more = ((self.states[DIVERGING], DIVERGING), (self.explained, "of the failed explained"), (len(self.unjudged), "cases without a verdict on a value"),
                 (self.absent, "cases not run"), (self.stale, "stale runs"))
         return "; ".join([counts, *(f"{number} {what}" for number, what in more if number)])
 

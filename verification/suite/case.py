@@ -24,7 +24,7 @@ class Standard:
     why: str = ""  # it was chosen so, where that is told
 
     def is_looser_than(self, other: "Standard") -> bool:
-        """Whether anything that meets `other` might miss it in nothing, and more may meet this one."""
+        """Whether it asks for less in any one point: goal, band, or the goal at dx to 0."""
         def looser(mine: float | None, others: float | None) -> bool:
             return others is not None and (mine is None or mine > others)
 
@@ -93,6 +93,7 @@ class Vary:
     ratio: float | None  # None: another choice within a range, or another start
     order: float
     seeds: bool = False  # the sets are other starts, of one distribution
+    from_lattice: bool = False  # the run itself is none of these: it starts from a bare lattice
 
 
 @dataclass(frozen=True)

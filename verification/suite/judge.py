@@ -7,11 +7,15 @@ VALIDATED      |E| <= k u_val <= goal
 WITHIN GOAL    |E| <= goal, but k u_val > goal, or no uncertainty is known: nothing contradicts, nothing is resolved
 FAILED         |E| > k u_val, or |E| > goal
 CODE-TO-CODE   |E| <= goal, the reference being another code with the same law: a check of programming, no validation
-INCONCLUSIVE   the value or the reference may not be used: forces out of balance, a reference code that failed
+INCONCLUSIVE   the value or the reference may not be used: forces out of balance, a reference code that failed, no number on a
+               level or of a reference
 SKIPPED        the reference or the capability is not there
 
 Where the reference is 0 the value is itself an error, a norm for instance. It need not lie within its own uncertainty, as no limit
-of it can be below 0: with |E| > k u_val it is WITHIN GOAL.
+of it can be below 0: with |E| > k u_val it is WITHIN GOAL. A value that must be met exactly, with a goal of 0, is VALIDATED where it is met.
+
+Where the finest level starts from a bare lattice and the scatter of disordered starts is known, the mean of these is judged as
+well, as a value of its own.
 
 What levels show is in ladder.py. DIVERGING fails whatever the error; a band that the manifest declares for the order must be met.
 """
@@ -101,7 +105,14 @@ class Outcome:
     @property
     def objection(self) -> str:
         """Why neither number may be held against the other, if so."""
-        return "; ".join(filter(None, (self.measured.objection, self.observable.unusable)))
+        return "; ".join(filter(None, (self.measured.objection, self.observable.unusable, self._no_number)))
+
+    @property
+    def _no_number(self) -> str:
+        """What of the judging is none, the value itself apart, which then has failed."""
+        if math.isnan(self.observable.reference) and not self.observable.unusable:
+            return "the reference is no number"
+        return "" if math.isfinite(self.uncertainty) else "an estimate of its error is no number"
 
     @property
     def verdict(self) -> str:
@@ -118,7 +129,7 @@ class Outcome:
     @property
     def _resolved(self) -> str:
         """Of an error within the goal."""
-        if self.error == 0.0 and self.observable.uncertainty == 0.0:
+        if self.observable.goal == 0.0:
             return VALIDATED
         if not self.is_estimated or not self.bound <= self.observable.goal:
             return WITHIN_GOAL
@@ -146,8 +157,8 @@ class Outcome:
 
     @property
     def explained(self) -> str:
-        """Why it FAILED, where the manifest knows, and by no more than that explains."""
-        known = not self.holds and self.verdict != INCONCLUSIVE and abs(self.error) <= self.observable.explained_goal
+        """Why it FAILED, where the manifest knows, and by no more than that explains. What levels show has no such excuse."""
+        known = self.verdict == FAILED and self.converges_as_asked and abs(self.error) <= self.observable.explained_goal
         return self.observable.explained if known else ""
 
     @property
@@ -187,6 +198,8 @@ class Outcome:
             return "not a number"
         if abs(self.error) > self.observable.goal:
             return f"beyond the {goal}"
+        if self.observable.goal == 0.0:
+            return "met exactly"
         if not self.is_estimated:
             return f"{goal}, no estimate of its own error"
         bound = f"k u = {self.bound_text}"
@@ -216,19 +229,24 @@ def _height(case: Case, entry: Entry) -> float:
 def _varied(vary: Vary, base: float, values: list[float]) -> float:
     """Standard uncertainty from one source of error."""
     if vary.seeds:
-        return float(np.std([base, *values], ddof=1))
-    if vary.ratio is None:  # a choice that might have been another within this range
-        return (max(base, *values) - min(base, *values)) / 2 / math.sqrt(3)
+        return float(np.std(_starts(vary, base, values), ddof=1))
+    if vary.ratio is None:  # a choice that might have been another: anywhere as far from it as the farthest tried
+        return max(abs(value - base) for value in values) / math.sqrt(3)
     return SAFETY * abs(values[0] - base) / (1 - vary.ratio**-vary.order) / COVERAGE
+
+
+def _starts(vary: Vary, base: float, values: list[float]) -> list[float]:
+    """Of one distribution: the run itself is one of them unless it starts from a bare lattice."""
+    return values if vary.from_lattice else [base, *values]
 
 
 def _converge(case: Case, outcome: Outcome) -> Outcome:
     """With what its levels show."""
     observable = outcome.observable
     noise = max((math.sqrt(2) * factor_of(freedom) * outcome.sources[source] for source, freedom in outcome.freedom.items()), default=0.0)
-    explained = COVERAGE * math.hypot(*outcome.sources.values(), observable.uncertainty, observable.input)
+    allowed = COVERAGE * math.hypot(*outcome.sources.values(), observable.uncertainty, observable.input)
     found = converge(outcome.spacings, [level.value for level in outcome.levels], observable.reference,
-                     COVERAGE * observable.uncertainty, noise, explained, outcome.band)
+                     COVERAGE * observable.uncertainty, noise, allowed, outcome.band)
     source = "resolution" if case.refined == "spacing" else "step"
     return replace(outcome, convergence=found, sources={source: found.estimate.bound / COVERAGE} | outcome.sources)
 
@@ -248,13 +266,27 @@ def judge(case: Case, tier: str, entries: Entries) -> list[Outcome]:
             values = [of(base + chosen).value for chosen in vary.sets]
             sources[vary.source] = _varied(vary, of(base).value, values)
             if vary.seeds:
-                freedom[vary.source], seeds[vary.source] = len(values), (of(base).value, *values)
+                starts = _starts(vary, of(base).value, values)
+                freedom[vary.source], seeds[vary.source] = len(starts) - 1, tuple(starts)
+            if vary.from_lattice:
+                sources["lattice"] = abs(float(np.mean(values)) - of(base).value)
         outcome = Outcome(observable, levels[-1], sources, freedom, tuple(_height(case, one) for one in finished), tuple(levels), seeds,
                           remark=case.remark)
-        outcomes.append(_converge(case, outcome) if len(levels) > 1 else outcome)
+        finest = _converge(case, outcome) if len(levels) > 1 else outcome
+        outcomes.append(finest)
         if observable.extrapolated is not None and len(levels) > 2:
             outcomes.append(_at_zero(outcomes[-1]))
+        outcomes += [_of_starts(finest, vary, seeds[vary.source]) for vary in case.vary if vary.from_lattice]
     return outcomes
+
+
+def _of_starts(finest: Outcome, vary: Vary, values: tuple[float, ...]) -> Outcome:
+    """The mean over disordered starts as an outcome of its own, with the same goal; the other errors are those of the lattice."""
+    observable = replace(finest.observable, symbol=f"{finest.observable.symbol}, {vary.source}", order=None, extrapolated=None)
+    mean, scatter = float(np.mean(values)), float(np.std(values, ddof=1)) / math.sqrt(len(values))
+    others = {name: u for name, u in finest.sources.items() if name not in (vary.source, "lattice")}
+    return Outcome(observable, replace(finest.measured, value=mean), others | {"mean of starts": scatter},
+                   {"mean of starts": len(values) - 1}, seeds={vary.source: values})
 
 
 def _at_zero(finest: Outcome) -> Outcome:
@@ -262,7 +294,7 @@ def _at_zero(finest: Outcome) -> Outcome:
     found = extrapolated(finest.spacings, [level.value for level in finest.levels])
     objection = "; ".join(dict.fromkeys(filter(None, (level.objection for level in finest.levels[-found.used :]))))
     observable = replace(finest.observable, symbol=f"{finest.observable.symbol}, dx to 0",
-                         goal=finest.observable.extrapolated, order=None, extrapolated=None)
+                         goal=finest.observable.extrapolated, order=None, extrapolated=None, explained="", explained_goal=0.0)
     sources = {name: value for name, value in finest.sources.items() if name != "resolution"}
     return Outcome(observable, Measured(found.value, 0.0, objection), sources | {f"extrapolation ({found.how})": found.uncertainty},
                    finest.freedom)

@@ -3,8 +3,9 @@
 Levels run from coarse to fine; h is what is refined, the spacing or the step. The method is of second order, FORMAL: no estimate
 takes a higher one, and an observed order far above it only says that the levels are not yet where theory holds.
 
-Eca and Hoekstra, J. Comput. Phys. 262, 2014, 104-130, over four levels or more; over three, Celik, Ghia, Roache, Freitas, Coleman
-and Raad, J. Fluids Eng. 130, 2008, 078001, with their limits on the order; over two, Roache, J. Fluids Eng. 116, 1994, 405-413.
+Eca and Hoekstra, J. Comput. Phys. 262, 2014, 104-130, over four levels or more; their limits on the order and their factors also
+over three, whose order is that of Celik, Ghia, Roache, Freitas, Coleman and Raad, J. Fluids Eng. 130, 2008, 078001; over two,
+Roache, J. Fluids Eng. 116, 1994, 405-413.
 """
 
 import math
@@ -50,7 +51,7 @@ def observed_order(h: Sequence[float], values: Sequence[float]) -> float:
     r21, r32 = h[-2] / h[-1], h[-3] / h[-2]
     e21, e32 = medium - fine, coarse - medium
     if not math.isfinite(e21 * e32) or e21 == 0.0 or e32 / e21 <= 0.0:
-        return math.nan
+        return math.nan  # also where the first two are equal
 
     def excess(order: float) -> float:
         """Grows with the order from below 0 to above it."""
@@ -128,7 +129,8 @@ def _power_law(h: np.ndarray, values: np.ndarray, weighted: bool) -> Fit:
 
 def _least_squares(h: np.ndarray, values: np.ndarray) -> Estimate:
     """Four levels or more."""
-    free = _best([_power_law(h, values, weighted) for weighted in (False, True)])
+    laws = [_power_law(h, values, weighted) for weighted in (False, True)]
+    free = _best([law for law in laws if law.powers[0] > 0] or laws)
     order = free.powers[0]
     chosen = free
     if order > FORMAL:
@@ -161,23 +163,28 @@ def estimate(h: Sequence[float], values: Sequence[float]) -> Estimate:
     if is_trusted(order):
         step = change / (ratio ** min(order, FORMAL) - 1)
         return Estimate(SAFETY * abs(step), order, values[-1] + step, "three levels")
-    if order > HIGHEST_ORDER:
-        return Estimate(SAFETY_WITHOUT_ORDER * abs(change) / (ratio**FORMAL - 1), order, how="three levels")
+    if order > HIGHEST_ORDER:  # the last change may be small by chance: at least what second order makes of the one before
+        expected = (values[-2] - values[-3]) * (h[-2] ** FORMAL - h[-1] ** FORMAL) / (h[-3] ** FORMAL - h[-2] ** FORMAL)
+        change = max(abs(change), abs(expected))
+        return Estimate(SAFETY_WITHOUT_ORDER * change / (ratio**FORMAL - 1), order, how="three levels")
     return Estimate(SAFETY_WITHOUT_ORDER * max(max(values) - min(values), abs(change) / (ratio - 1)), order, how="three levels")
 
 
 # What the levels show.
 
 
-def _grows(h: Sequence[float], values: Sequence[float], noise: float) -> bool:
-    """Each difference, for its step in h, is larger than the one before, by more than noise explains."""
+ROUNDING = 1e-12  # of a value
+
+
+def _grows(h: Sequence[float], values: Sequence[float], floor: float) -> bool:
+    """Each difference, for its step in h, is larger than the one before, by more than the floor."""
     changes = np.diff(values)
-    if np.max(np.abs(changes)) <= noise:
+    if np.max(np.abs(changes)) <= floor:
         return False
     for k in range(2, len(values)):
-        order = observed_order(h[: k + 1], values[: k + 1])
-        swings = math.isnan(order) and changes[k - 1] * changes[k - 2] < 0 and abs(changes[k - 1]) > abs(changes[k - 2]) + noise
-        if not (swings or order <= 0):
+        before, now = changes[k - 2], changes[k - 1]
+        wider = before * now <= 0 and abs(now) > abs(before) + floor  # in swings, or after none
+        if not (wider or observed_order(h[: k + 1], values[: k + 1]) <= 0):
             return False
     return True
 
@@ -187,10 +194,11 @@ def _approaches(errors: Sequence[float]) -> bool:
     return bool(np.all(np.diff(np.abs(errors)) < 0))
 
 
-def _leaves(errors: Sequence[float], explained: float) -> bool:
-    """Each level is farther from the reference, in all by more than is explained by what is not refined."""
+def _leaves(errors: Sequence[float], limit: float, allowed: float) -> bool:
+    """Each level is farther from the reference, in all by more than what is not refined allows, and so is the error of the limit,
+    where there is one."""
     away = np.abs(errors)
-    return bool(np.all(np.diff(away) > 0)) and away[-1] - away[0] > explained
+    return bool(np.all(np.diff(away) > 0)) and away[-1] - away[0] > allowed and not abs(limit) <= allowed
 
 
 @dataclass(frozen=True)
@@ -202,30 +210,35 @@ class Convergence:
     estimate: Estimate
 
 
-SHARP = 0.1  # of the smallest error: the uncertainty of a reference whose errors tell an order
+SHARP = 0.1  # errors tell an order where what is uncertain about their reference is below this share of the smallest
 
 
 def converge(h: Sequence[float], values: Sequence[float], reference: float, uncertainty: float, noise: float = 0.0,
-             explained: float = 0.0, band: tuple[float, float] = BAND) -> Convergence:
+             allowed: float = 0.0, band: tuple[float, float] = BAND) -> Convergence:
     """At least two levels. `uncertainty` is that of the reference; `noise` is by how much two of equal levels may differ, from several
-    starts; `explained` is how far from the reference a limit may be by all that is not refined: the reference itself, the step, the
+    starts; `allowed` is how far from the reference a limit may be by all that is not refined: the reference itself, the step, the
     sound speed. All 95 %, absolute."""
     found = estimate(h, values)
     if len(values) < 3:
         return Convergence("", math.nan, found)
     errors = [value - reference for value in values]
-    through_zero = min(errors) < 0 < max(errors)  # then their size tells no order
-    sharp = uncertainty <= SHARP * min(map(abs, errors))
-    order = error_order(h, errors) if sharp and not through_zero else found.order
     if not all(map(math.isfinite, errors)):
         return Convergence(NOT_CONVERGING, math.nan, found)
     if not any(errors):
         return Convergence(CONVERGING, math.nan, found)
-    if _leaves(errors, max(noise, explained)) or (_grows(h, values, noise) and not _approaches(errors)):
+    through_zero = min(errors) < 0 < max(errors)  # then their size tells no order
+    sharp = uncertainty <= SHARP * min(map(abs, errors)) and not through_zero
+    order = error_order(h, errors) if sharp else found.order
+    floor, changes = max(noise, uncertainty, ROUNDING * max(map(abs, values))), np.abs(np.diff(values))
+    leaves = _leaves(errors, found.limit - reference, max(floor, allowed))
+    if leaves or (_grows(h, values, floor) and not _approaches(errors)):
         return Convergence(DIVERGING, order, found)
-    if band[0] <= order <= band[1]:
+    if noise > 0 and np.max(changes) <= noise:
+        return Convergence(NOISE_LIMITED, order, found)
+    falls = not sharp or abs(errors[-1]) < abs(errors[-2])
+    if band[0] <= order <= band[1] and falls:
         return Convergence(CONVERGING, order, found)
-    if 0 < abs(values[-1] - values[-2]) <= noise:
+    if noise > 0 and changes[-1] <= noise:
         return Convergence(NOISE_LIMITED, order, found)
     return Convergence(NOT_CONVERGING, order, found)
 

@@ -76,6 +76,8 @@
     order = 1                       # as the change / (1 - ratio^-order). Without ratio: other choices, whose range counts
     # or, in place of sets: other starts, four or more, whose scatter counts, with that of the finest quick level itself
     seeds = [["seed=2"], ["seed=3"], ["seed=4"], ["seed=5"]]
+    from_lattice = false            # true: that level starts from a bare lattice and is none of them, which then are five or
+                                    # more; their mean is judged as well; false if left out
 
     [[case.beside]]                 # measured and reported, without a verdict
     label = "classic"
@@ -184,8 +186,8 @@ def _standard(table: dict, where: str) -> Standard:
     found = Standard(_day(table, "since", where), float(_entry(table, "goal", NUMBER, where)), tuple(band) if band else None,
                      float(_entry(table, "extrapolated", NUMBER, where)) if "extrapolated" in table else None,
                      " ".join(_entry(table, "why", str, where, "").split()))
-    if min(found.goal, found.extrapolated or 0.0) < 0:
-        raise CaseError(f"{where}: goal and extrapolated must not be negative")
+    if not all(0 <= value < math.inf for value in (found.goal, found.extrapolated or 0.0)):
+        raise CaseError(f"{where}: goal and extrapolated must be finite, and not be negative")
     return found
 
 
@@ -215,6 +217,8 @@ EXPLAINED = ("explained", "explained_goal")
 
 
 def _explanation(table: dict, where: str) -> dict:
+    if "explained_goal" in table and "explained" not in table:
+        raise CaseError(f"{where}.explained_goal: says how far an explanation goes, and there is none; add explained")
     return {"explained": " ".join(_entry(table, "explained", str, where, "").split()),
             "explained_goal": _entry(table, "explained_goal", NUMBER, where, 0.0 if "explained" not in table else None)}
 
@@ -238,8 +242,9 @@ def _observable(table: dict, where: str) -> Observable:
         order=standard.order,
         extrapolated=standard.extrapolated,
     )
-    if observable.input < 0 or observable.uncertainty < 0:
-        raise CaseError(f"{where}: uncertainty and input must not be negative")
+    computed = "reference" not in table
+    if not (0 <= observable.input < math.inf and (computed or 0 <= observable.uncertainty < math.inf)):
+        raise CaseError(f"{where}: uncertainty and input must be finite, and not be negative")
     return observable
 
 
@@ -249,6 +254,7 @@ def _level(table: dict, where: str) -> Level:
 
 
 FEWEST_STARTS = 5
+OWN_SOURCES = ("time", "resolution", "lattice")
 
 
 def _sets(table: dict, key: str, where: str) -> tuple[tuple[str, ...], ...]:
@@ -259,15 +265,18 @@ def _sets(table: dict, key: str, where: str) -> tuple[tuple[str, ...], ...]:
 
 
 def _vary(table: dict, where: str) -> Vary:
-    _only(table, ("source", "sets", "seeds", "ratio", "order"), where)
+    _only(table, ("source", "sets", "seeds", "from_lattice", "ratio", "order"), where)
     source = _entry(table, "source", str, where)
+    if source in OWN_SOURCES:
+        raise CaseError(f"{where}.source = {source!r}: is what the judge itself calls an estimate; take another word")
     if "seeds" in table:
         if more := [key for key in ("sets", "ratio", "order") if key in table]:
             raise CaseError(f"{where}.{more[0]}: does not go with seeds; remove one of them")
-        seeds = _sets(table, "seeds", where)
-        if len(seeds) + 1 < FEWEST_STARTS:
-            raise CaseError(f"{where}.seeds: {len(seeds)} of them, {len(seeds) + 1} starts in all; {FEWEST_STARTS} are the fewest that count")
-        return Vary(source, seeds, None, 1.0, seeds=True)
+        seeds, from_lattice = _sets(table, "seeds", where), _flag(table, "from_lattice", where)
+        starts = len(seeds) + (0 if from_lattice else 1)
+        if starts < FEWEST_STARTS:
+            raise CaseError(f"{where}.seeds: {len(seeds)} of them, {starts} starts in all; {FEWEST_STARTS} are the fewest that count")
+        return Vary(source, seeds, None, 1.0, seeds=True, from_lattice=from_lattice)
     sets, ratio = _sets(table, "sets", where), table.get("ratio")
     if ratio is not None and (len(sets) != 1 or not isinstance(ratio, NUMBER) or ratio <= 1):
         raise CaseError(f"{where}.ratio = {ratio!r}: needs one entry in sets, and must be above 1")
@@ -313,7 +322,7 @@ def _unbanded(table: dict, where: str) -> _Unbanded | None:
 
 def _of_point(observable: Observable, unbanded: _Unbanded | None, table: dict, where: str) -> Observable:
     made = _without_band(observable, unbanded) if unbanded else observable
-    return replace(made, **_explanation(table, where)) if EXPLAINED[0] in table else made
+    return replace(made, **_explanation(table, where)) if set(EXPLAINED) & set(table) else made
 
 
 def _without_band(observable: Observable, unbanded: _Unbanded) -> Observable:
@@ -389,6 +398,9 @@ def read_cases(file: Path) -> list[Case]:
     _only(table, ("purpose", "chapter", "section", "equations", "tier", "cost", "refined", "remark", "equivalence", "live", "point",
                   "parameters", "formulas", *lists), where)
     found = {key: _all_of(table, key, read, where) for key, read in lists.items()}
+    sources = [vary.source for vary in found["vary"]]
+    if len(set(sources)) < len(sources):
+        raise CaseError(f"{where}.vary: two have the same source; rename one")
     for i, observable in enumerate(found["observable"]):
         if observable.order and len(found["level"]) < 3:
             raise CaseError(f"{where}.observable[{i}].order: an order needs three levels; add [[case.level]]")

@@ -40,6 +40,6 @@ def factor_of(freedom: int) -> float:
 def coverage_of(sources: Sequence[tuple[float, int | None]]) -> float:
     """For the sum of independent sources: (standard uncertainty, its degrees of freedom, None if it comes from no sample) each."""
     sampled = sum(u**4 / freedom for u, freedom in sources if freedom)
-    if sampled == 0.0:
+    if sampled == 0.0 or not all(math.isfinite(u) for u, _ in sources):
         return NORMAL
     return factor_of(max(1, int(sum(u**2 for u, _ in sources) ** 2 / sampled + 1e-9)))
