@@ -62,4 +62,4 @@ def test_efficiency_is_taken_within_a_round() -> None:
         return Point("", processes, 100 * processes, {"steps": seconds}, 0, 0, "")
 
     found = {1: [point(1, 1.0), point(1, 2.0)], 2: [point(2, 1.25), point(2, 2.5)]}
-    assert scaling.efficiency(found, 2) == pytest.approx(0.8)
+    assert scaling.efficiency(found, 2).value == pytest.approx(0.8)

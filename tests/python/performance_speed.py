@@ -50,7 +50,7 @@ def test_rounds_that_end_with_other_digests_are_broken() -> None:
 def test_a_ratio_is_the_median_of_ratios_within_a_round() -> None:
     """A machine that halves its speed for one round moves neither figure of the others."""
     over, under = [Speed(4.0), Speed(1.0), Speed(6.0)], [Speed(2.0), Speed(0.5), Speed(2.0)]
-    assert meter.ratio_of(over, under) == meter.Spread(2.0, 2.0, 2.0)
+    assert meter.ratio_of(over, under) == meter.Spread(2.0, 2.0, 3.0)
     assert meter.rate_of(over).value == 4.0
 
 

@@ -154,7 +154,7 @@ def test_the_judge_lists_and_runs_cases(tmp_path: Path) -> None:
     judged = verification("run", "rest", "--lab", str(tmp_path), "--set", "run.steps=10")
     assert judged.returncode == 0, judged.stderr
     assert judged.stdout.splitlines() == [
-        "max(|v|) / c = 0 +- 0 (reference 0 +- 0, error 0, VALIDATED: goal 0, no estimate of its own error)",
+        "max(|v|) / c = 0 +- 0 (reference 0 +- 0, error 0, VALIDATED: met exactly)",
         "mass and momentum: EXACT at 2 samples of 1 runs",
     ]
     assert verification("run", "nothing").returncode != 0
