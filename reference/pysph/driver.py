@@ -6,6 +6,7 @@ density, viscosity (kinematic), sound_speed, h, mass, step, steps, every. OUTPUT
 start and every so many steps; setup_seconds, of processor time, in which PySPH is loaded, and generates and compiles its loops.
 """
 
+import itertools
 import resource
 import sys
 
@@ -79,11 +80,12 @@ def run(given: dict) -> dict[str, np.ndarray]:
     arrays = [array_of(name, given, mask) for name, mask in zip((FLUID, WALL), masks, strict=False)]
     frames = [(0.0, *state(arrays, masks, dimension))]
     solver = solver_of(given, arrays)
-    setup = seconds()
+    setup, steps = seconds(), itertools.count(1)  # the solver counts a step before or after it calls, by its release
 
-    def keep(solver) -> None:
-        if solver.count % int(given["every"]) == 0:
-            frames.append((solver.count * float(given["step"]), *state(arrays, masks, dimension)))
+    def keep(_) -> None:
+        done = next(steps)
+        if done % int(given["every"]) == 0:
+            frames.append((done * float(given["step"]), *state(arrays, masks, dimension)))
 
     solver.add_post_step_callback(keep)
     solver.solve(show_progress=False)

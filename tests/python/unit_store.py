@@ -195,6 +195,14 @@ def test_a_store_of_the_first_format_is_brought_up_to_date_and_loses_nothing(tmp
     assert Store(file).figures()[0].high == 2.5
 
 
+def test_an_export_names_no_folder_of_the_machine_that_made_it(full: Store, tmp_path: Path) -> None:
+    folder = "/home/somebody/runs/runs/0123456789abcdef01234567.12-34.part"
+    full.enter_refusal("key", "label", "code", f"solver --scene {folder}/scene.toml --out {folder}/out: failed in '{folder}'")
+    export(full, tmp_path / "store.jsonl")
+    (line,) = [line for line in (tmp_path / "store.jsonl").read_text().splitlines() if "solver --scene" in line]
+    assert "solver --scene scene.toml --out out: failed in ''" in line
+
+
 def test_an_export_of_the_first_format_is_read(full: Store, tmp_path: Path) -> None:
     file, other = tmp_path / "store.jsonl", Store(":memory:")
     rows = export(full, file)

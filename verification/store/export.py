@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -20,9 +21,17 @@ def _head(rows: int, number: int = FORMAT) -> dict:
     return {"store": "MaPPM", "format": number, "rows": rows}
 
 
+RUN_FOLDER = re.compile(r"[^\s\"'=\\]*/runs/[0-9a-f]{24}[^/\s\"'\\]*/?")  # of the laboratory that made a run, which is gone
+
+
+def without_folders(text: str) -> str:
+    """A command or a message as it reads in any laboratory."""
+    return RUN_FOLDER.sub("", text)
+
+
 def _row_line(table: str, row: dict) -> str:
     kept = {name: json.loads(value) if name in PARSED else value for name, value in row.items() if value is not None}
-    return _line({table: kept})
+    return without_folders(_line({table: kept}))
 
 
 def export(store: Store, file: Path) -> int:

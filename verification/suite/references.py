@@ -8,6 +8,7 @@ from verification.codes.code import Code, find_code
 from verification.measures.measures import Values, measures_in
 from verification.protocol.errors import Beyond, CaseError, SolverError, last_line
 from verification.protocol.quantity import Quantity, quantity_of
+from verification.store.export import without_folders
 from verification.store.laboratory import Laboratory, Request
 from verification.suite.case import Case, Observable
 from verification.suite.judge import Entries
@@ -45,7 +46,7 @@ def look_up_reference(laboratory: Shelf, case: Case, tier: str, entries: Entries
     if stored is None:
         return None
     record = stored.record
-    return Reference(code.title, stored.version, record["command"], record.get("inputs", ""),
+    return Reference(code.title, stored.version, without_folders(record["command"]), record.get("inputs", ""),
                      {name: quantity_of(stated) for name, stated in record.get("quantities", {}).items()},
                      record.get("objection", ""), key=stored.key)
 

@@ -6,6 +6,7 @@ from verification.codes.code import Code, all_codes, find_code
 from verification.measures.source import measure_id
 from verification.protocol.errors import Beyond, CaseError, Killed, SolverError, last_line
 from verification.protocol.machine import commit
+from verification.store.export import without_folders
 from verification.store.key import hash_of
 from verification.store.laboratory import Laboratory
 from verification.suite.ability import stated_alone
@@ -61,7 +62,7 @@ def _failure_key(job: Job) -> str:
 
 def _why_not(shelf: Shelf, job: Job) -> str:
     """The words with which the code refused or failed; empty where it did not."""
-    return shelf.store.refusal(job.request.key) or shelf.store.refusal(_failure_key(job))
+    return without_folders(shelf.store.refusal(job.request.key) or shelf.store.refusal(_failure_key(job)))
 
 
 def missing_of_table(shelf: Shelf) -> list[Job]:
