@@ -7,17 +7,18 @@ from verification.measures.curve import Chart, Curve
 from verification.measures.impacts import measured
 from verification.measures.measures import Measures, Point
 
-FIGURE = "tangential_restitution"
+
+def beside_kharaz(figure: str, title: str, label: str) -> Measures:
+    """The measure of that name, one of the figures of Kharaz, Gorham and Salman, and over the angle beside the experiment."""
+    def family_curves(results: list[Point]) -> list[Chart]:
+        angles = angles_of(figure)
+        found = sorted((angle_of(point.scene), point.value) for point in results)
+        return [Chart(title, "angle between velocity and normal (degrees)", label, (
+            Curve("Kharaz, Gorham and Salman 2001", np.array(angles), np.array([kharaz(figure, angle).value for angle in angles]),
+                  reference=True, points=True, error=np.full(len(angles), 2 * UNCERTAINTY[figure])),
+            Curve("MaPPM", *np.array(found).T, points=True, marker="x")))]
+
+    return Measures(observables=measured(figure), charts_of_family=family_curves)
 
 
-def family_curves(results: list[Point]) -> list[Chart]:
-    """The measure over the angle, beside the experiment."""
-    angles = angles_of(FIGURE)
-    found = sorted((angle_of(point.scene), point.value) for point in results)
-    return [Chart("What is left of the tangential velocity", "angle between velocity and normal (degrees)", "e_t", (
-        Curve("Kharaz, Gorham and Salman 2001", np.array(angles), np.array([kharaz(FIGURE, angle).value for angle in angles]),
-              reference=True, points=True, error=np.full(len(angles), 2 * UNCERTAINTY[FIGURE])),
-        Curve("MaPPM", *np.array(found).T, points=True, marker="x")))]
-
-
-MEASURES = Measures(observables=measured(FIGURE), charts_of_family=family_curves)
+MEASURES = beside_kharaz("tangential_restitution", "What is left of the tangential velocity", "e_t")

@@ -27,6 +27,7 @@ from verification.codes.mappm import MPI_ENVIRONMENT
 KINDS = {"case": (1, 99), "bits": (3, 4), "pytest": (1, 1), "gtest": (2, 2), "mpi": (3, 3)}
 # Exit codes that say "failed", apart from death by a signal; any other is trouble of the detector's own.
 FAILED = {"case": {1}, "bits": {1}, "pytest": {1}, "gtest": {1}, "mpi": set(range(1, 256))}
+FOLDERS = re.compile(r"(?<![\w.])/(?:[^\s/'\":]+/)+")  # of this machine, before the name of a file
 # The line that says why, most telling first.
 REASONS = (r"^E  +(.*)", r"(.*[,;] (?:FAILED|INCONCLUSIVE|NOT CONVERGING|DIVERGING|CHANGED).*)", r"^(first difference.*)",
            r"^(rank \d+: .*)", r"^error: (.*)", r"(.*: Failure)", r"^(verification: .*)", r"^(\w*Error.*)", r"(.+)")
@@ -98,7 +99,7 @@ def first_reason(kind: str, output: str) -> str:
         if found:
             line = found[1]
             after = output[found.end() :].split("\n")[1:2] if kind in ("gtest", "mpi") else []
-            return " ".join([line, *after]).replace(f"{ROOT}/", "").strip()[:200]
+            return FOLDERS.sub("", " ".join([line, *after]).replace(f"{ROOT}/", "")).strip()[:200]
     return "no message"
 
 

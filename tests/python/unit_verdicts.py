@@ -333,6 +333,17 @@ def test_the_mean_of_disordered_starts_is_judged_beside_the_lattice(tmp_path: Pa
     assert starts.sources["mean of starts"] == pytest.approx(0.0158 / math.sqrt(5), rel=0.01)
 
 
+def test_an_explanation_of_the_starts_excuses_them_alone(tmp_path: Path) -> None:
+    told = OBSERVABLE + 'explained = "disorder"\nexplained_goal = 0.5\nexplains = "starts"\n'
+    (case,) = read_cases(written(tmp_path, told + STARTS))
+    entries = {key: SimpleNamespace(scene={"fluid": {"spacing": 0.1}}, found=Found({"drag": Measured(1.2, 0.0)}))
+               for key in ((), *(chosen for vary in case.vary for chosen in vary.sets))}
+    lattice, starts = judge(case, "quick", entries)
+    assert (lattice.verdict, lattice.passes, starts.verdict, starts.passes) == (FAILED, False, FAILED, True)
+    with pytest.raises(CaseError, match="explains = 'all': unknown; known are value, starts"):
+        read_cases(written(tmp_path, told.replace('"starts"', '"all"')))
+
+
 # --- the register of goals
 
 
@@ -390,7 +401,7 @@ def decided(case: Case) -> dict:
     """All of a case that decides its verdicts, beside its scene and its measures."""
     rows = [{"symbol": one.against, "name": one.name, "reference": one.reference, "uncertainty": one.uncertainty, "input": one.input,
              "published": one.published, "live": one.live, "code_to_code": one.code_to_code, "needs": list(one.needs),
-             "standard": standard_text(one.standard), "explained_goal": one.explained_goal} for one in case.observables]
+             "standard": standard_text(one.standard), "explained_goal": one.explained_goal, "explains": one.explains} for one in case.observables]
     varied = [[vary.source, [list(chosen) for chosen in vary.sets], vary.ratio, vary.order, vary.seeds, vary.from_lattice] for vary in case.vary]
     live = [case.live.code, case.live.problem, list(case.live.quick), list(case.live.full)] if case.live else []
     return {"case": case.name, "tier": case.tier, "refined": case.refined, "observables": rows, "live": live, "vary": varied,

@@ -21,6 +21,7 @@ SMALL = 8  # points, of a legend
 CHARACTER, HANDLE, LINE = 0.062, 0.44, 0.17  # inches: width of a letter of a legend, of its sample, and height of its lines
 TICKS, NAME = 20, 16  # points below the axes that labels of ticks and the name of the axis take
 FEW, MANY = 3, 7  # ticks of a logarithmic axis
+ERROR = {"elinewidth": 0.8, "capsize": 2}  # of bars that show the range over rounds
 
 
 @contextmanager
@@ -101,3 +102,8 @@ def _label(axis) -> None:
     elif len(labelled_ticks(axis)) < 2:
         ticks = MaxNLocator(6, min_n_ticks=4).tick_values(low, high)
         axis.set_major_locator(FixedLocator(ticks[(ticks >= low) & (ticks <= high)]))
+
+
+def bars(off: list[tuple[float, float]]) -> list[list[float]]:
+    """Below and above, as matplotlib takes them."""
+    return [[low for low, _ in off], [high for _, high in off]]

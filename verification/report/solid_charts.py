@@ -2,18 +2,12 @@
 
 from pathlib import Path
 
-from verification.report.canvas import BLUE, DARK, GREY, figure_of
+from verification.report.canvas import BLUE, DARK, ERROR, GREY, bars, figure_of
 from verification.store.figures import Figures
 
 SUSPENSIONS = {"13_2d": "discs, 13 %", "13_3d": "spheres, 13 %", "dense_2d": "discs, 70 %, in contact",
                "dense_3d": "spheres, 55 %, in contact", "sizes_2d": "discs, radii 1:10", "sizes_3d": "spheres, radii 1:10"}
-ERROR = {"elinewidth": 0.8, "capsize": 2}  # of bars that show the range over rounds
 GOAL = 0.1  # share of solids at a fraction of 13 %
-
-
-def bars(off: list[tuple[float, float]]) -> list[list[float]]:
-    """Below and above, as matplotlib takes them."""
-    return [[low for low, _ in off], [high for _, high in off]]
 
 
 def costs_of_solids(figures: Figures, file: Path) -> None:

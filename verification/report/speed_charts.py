@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from verification.report.canvas import BLUE, DARK, GREEN, GREY, RED, figure_of
-from verification.report.solid_charts import ERROR, bars, costs_of_solids
+from verification.report.canvas import BLUE, DARK, ERROR, GREEN, GREY, RED, bars, figure_of
+from verification.report.solid_charts import costs_of_solids
 from verification.store.figures import Figures, Setting
 
 FLUIDS = {"2d_39": "plane, 39 neighbours", "3d_77": "space, 77 neighbours"}

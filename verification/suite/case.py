@@ -8,6 +8,7 @@ from verification.bits.equivalence import Equivalence
 
 TIERS = ("quick", "full")
 REFINED = ("spacing", "step")
+EXPLAINS = ("value", "starts")  # the value of the finest level, or the mean of disordered starts beside it
 OTHER = "other"  # chapter of a case that names none
 CHAPTERS = ("rest and bits", "waves and decay", "walls", "drag on fixed bodies", "moving bodies", "falling bodies", "contact",
             "the gas-solid system", OTHER)  # of the report, in its order
@@ -61,6 +62,7 @@ class Observable:
     since: date | None = None  # of goal and band
     why: str = ""  # these
     explained: str = ""  # why it misses its goal, found out and written down: FAILED all the same, and no reason to stop
+    explains: str = "value"  # which row, one of EXPLAINS
     explained_goal: float = 0.0  # largest error, as `goal`, that the explanation covers
     live: str = ""  # quantity of the reference code that is run for this case
     published: str = ""  # table of reference/published

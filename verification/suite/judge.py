@@ -183,8 +183,8 @@ class Outcome:
         """With the order; empty where there are no three levels."""
         if not self.state:
             return ""
-        return f"{self.state}, observed order {order_text(self.convergence.order)} in [{self.band[0]:g}, {self.band[1]:g}]" \
-            if self.state == CONVERGING else f"{self.state}, observed order {order_text(self.convergence.order)}"
+        band = f" in [{self.band[0]:g}, {self.band[1]:g}]" if self.state == CONVERGING else ""
+        return f"{self.state}, observed order {order_text(self.convergence.order)}{band}"
 
     @property
     def reason(self) -> str:
@@ -270,19 +270,24 @@ def judge(case: Case, tier: str, entries: Entries) -> list[Outcome]:
                 freedom[vary.source], seeds[vary.source] = len(starts) - 1, tuple(starts)
             if vary.from_lattice:
                 sources["lattice"] = abs(float(np.mean(values)) - of(base).value)
-        outcome = Outcome(observable, levels[-1], sources, freedom, tuple(_height(case, one) for one in finished), tuple(levels), seeds,
+        outcome = Outcome(_explained_for("value", observable), levels[-1], sources, freedom, tuple(_height(case, one) for one in finished), tuple(levels), seeds,
                           remark=case.remark)
         finest = _converge(case, outcome) if len(levels) > 1 else outcome
         outcomes.append(finest)
         if observable.extrapolated is not None and len(levels) > 2:
-            outcomes.append(_at_zero(outcomes[-1]))
-        outcomes += [_of_starts(finest, vary, seeds[vary.source]) for vary in case.vary if vary.from_lattice]
+            outcomes.append(_at_zero(finest))
+        outcomes += [_of_starts(observable, finest, vary, seeds[vary.source]) for vary in case.vary if vary.from_lattice]
     return outcomes
 
 
-def _of_starts(finest: Outcome, vary: Vary, values: tuple[float, ...]) -> Outcome:
+def _explained_for(row: str, observable: Observable) -> Observable:
+    """Without an explanation that is of another row."""
+    return observable if observable.explains == row else replace(observable, explained="", explained_goal=0.0)
+
+
+def _of_starts(observable: Observable, finest: Outcome, vary: Vary, values: tuple[float, ...]) -> Outcome:
     """The mean over disordered starts as an outcome of its own, with the same goal; the other errors are those of the lattice."""
-    observable = replace(finest.observable, symbol=f"{finest.observable.symbol}, {vary.source}", order=None, extrapolated=None)
+    observable = replace(_explained_for("starts", observable), symbol=f"{observable.symbol}, {vary.source}", order=None, extrapolated=None)
     mean, scatter = float(np.mean(values)), float(np.std(values, ddof=1)) / math.sqrt(len(values))
     others = {name: u for name, u in finest.sources.items() if name not in (vary.source, "lattice")}
     return Outcome(observable, replace(finest.measured, value=mean), others | {"mean of starts": scatter},
@@ -292,7 +297,7 @@ def _of_starts(finest: Outcome, vary: Vary, values: tuple[float, ...]) -> Outcom
 def _at_zero(finest: Outcome) -> Outcome:
     """The value extrapolated over the levels as an outcome of its own, with its own goal."""
     found = extrapolated(finest.spacings, [level.value for level in finest.levels])
-    objection = "; ".join(dict.fromkeys(filter(None, (level.objection for level in finest.levels[-found.used :]))))
+    objection = "; ".join(dict.fromkeys(filter(None, (level.objection for level in finest.levels))))
     observable = replace(finest.observable, symbol=f"{finest.observable.symbol}, dx to 0",
                          goal=finest.observable.extrapolated, order=None, extrapolated=None, explained="", explained_goal=0.0)
     sources = {name: value for name, value in finest.sources.items() if name != "resolution"}

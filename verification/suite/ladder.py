@@ -250,21 +250,20 @@ class Extrapolated:
     value: float
     uncertainty: float
     how: str
-    used: int  # of the levels, the finest
 
 
 def extrapolated(h: Sequence[float], values: Sequence[float]) -> Extrapolated:
     """At least three levels. The limit of the estimate where its order can be trusted; else, as scattered levels have none,
     a + b h or a + b h^2, whichever fits all of them better. NaN where a value is no number."""
     if not all(map(math.isfinite, values)):
-        return Extrapolated(math.nan, 0.0, "no number on a level", len(values))
+        return Extrapolated(math.nan, 0.0, "no number on a level")
     found = estimate(h, values)
     if is_trusted(found.order):
         correction = abs(found.limit - values[-1])
         second = values[-1] + (values[-1] - values[-2]) / ((h[-2] / h[-1]) ** FORMAL - 1)
         spread = max((SAFETY - 1) * correction, abs(found.limit - second))
-        return Extrapolated(found.limit, spread / 2, f"{found.how}, order {found.order:.2f}", 3 if len(values) == 3 else len(values))
+        return Extrapolated(found.limit, spread / 2, f"{found.how}, order {found.order:.2f}")
     fits = {order: fitted(np.array(h), np.array(values), (float(order),)) for order in (1, 2)}
     best = min(fits, key=lambda order: fits[order].error)
     return Extrapolated(fits[best].limit, math.hypot(fits[best].error, (fits[best].limit - fits[3 - best].limit) / 2),
-                        f"least squares, order {best}", len(values))
+                        f"least squares, order {best}")

@@ -44,6 +44,7 @@
     published = "square_array_stokes"  # a table of reference/published, looked up for the scene
     explained = "why it misses its goal"  # of a miss whose cause is known: it stays FAILED, is shown with the cause, and fails no test
     explained_goal = 0.05           # largest error, as goal, that this explains; comes with it
+    explains = "value"              # or "starts": the mean of disordered starts, see from_lattice; "value" if left out
     needs = ["force-on-body"]       # capabilities of a code beside those that the scene asks for; may be left out
     input = 0.0                     # standard uncertainty from the inputs, absolute; 0 if left out
     source = "Sangani and Acrivos 1982, table 1"
@@ -101,7 +102,7 @@ from verification.codes.code import all_codes
 from verification.protocol.capability import CAPABILITIES
 from verification.protocol.errors import CaseError
 from verification.protocol.machine import ROOT
-from verification.suite.case import CHAPTERS, REFINED, TIERS, Beside, Case, Level, Live, Observable, Retired, Standard, Vary
+from verification.suite.case import CHAPTERS, EXPLAINS, REFINED, TIERS, Beside, Case, Level, Live, Observable, Retired, Standard, Vary
 from verification.suite.ladder import BAND
 from verification.suite.parameters import derived, read_parameters, scene_of, split
 
@@ -213,13 +214,14 @@ def _retired(table: dict, where: str) -> Retired:
     return Retired(name, symbol, standard, _earlier(table, standard, where), _day(table, "until", where), reason)
 
 
-EXPLAINED = ("explained", "explained_goal")
+EXPLAINED = ("explained", "explained_goal", "explains")
 
 
 def _explanation(table: dict, where: str) -> dict:
-    if "explained_goal" in table and "explained" not in table:
-        raise CaseError(f"{where}.explained_goal: says how far an explanation goes, and there is none; add explained")
+    if "explained" not in table and (more := [key for key in EXPLAINED[1:] if key in table]):
+        raise CaseError(f"{where}.{more[0]}: says something of an explanation, and there is none; add explained")
     return {"explained": " ".join(_entry(table, "explained", str, where, "").split()),
+            "explains": _choice(table, "explains", EXPLAINS, where, "value"),
             "explained_goal": _entry(table, "explained_goal", NUMBER, where, 0.0 if "explained" not in table else None)}
 
 
