@@ -80,7 +80,8 @@ def test_only_faults_that_exist_are_chosen() -> None:
          "y = 2 (reference 1, error 1 %, FAILED)"),
         ("gtest", "Note\na.cpp:3: Failure\nExpected equality\n", "a.cpp:3: Failure Expected equality"),
         ("pytest", "F\n>  assert a\nE       assert 1 == 2\n", "assert 1 == 2"),
-        ("pytest", "E   SolverError: /opt/x/bin/python3 -m code run --scene /tmp/a1/scene.toml of 1/2\n", "SolverError: python3 -m code run --scene scene.toml of 1/2"),
+        ("pytest", "E   SolverError: /opt/x/bin/python3 -m code run --scene /tmp/a1/scene.toml of 1/2\n",
+         "SolverError: python3 -m code run --scene scene.toml of 1/2"),
         ("bits", "", "no message"),
     ],
 )
