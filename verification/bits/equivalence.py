@@ -24,13 +24,14 @@ import math
 import re
 import shutil
 from collections.abc import Callable
+from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 from verification.codes.mappm import INSTRUCTION_SETS, Options, best_instruction_set, program, run
 from verification.protocol.errors import SolverError, refuse
-from verification.protocol.machine import ROOT
+from verification.protocol.machine import ROOT, cores
 from verification.protocol.series import Table, first_difference
 
 UNCHANGED, CHANGED = "UNCHANGED", "CHANGED"
@@ -42,6 +43,11 @@ class Variant:
     label: str
     options: Options
     resumed_on: int | None = None  # ranks of the second half of a restarted run
+
+    @property
+    def alone(self) -> bool:
+        """Runs on one core."""
+        return max(self.options.ranks, self.resumed_on or 1) * (self.options.threads or 1) <= 1
 
 
 @dataclass(frozen=True)
@@ -203,23 +209,29 @@ def _row(variant: Variant, series: Table, reference: Table) -> Row:
 
 
 def run_matrix(scene: Path, equivalence: Equivalence, out: Path, say: Callable[[str], None] = print) -> Matrix:
-    """Runs every variant in a folder of its own under `out`, which is emptied before, and says each row as it comes.
+    """Runs every variant in a folder of its own under `out`, which is emptied before, and says each row as it comes: first those
+    of one core, as many at a time as there are cores, then the others one after another.
     A run that fails is a SolverError; a variant whose programs are not built, or not for this processor, is skipped, and
     so not equal."""
     shutil.rmtree(out, ignore_errors=True)
-    rows: list[Row] = []
-    reference: Table | None = None
-    for index, variant in enumerate(equivalence.variants):
-        skipped = obstacle(variant)
-        if skipped and reference is None:
-            raise SolverError(f"{variant.label}: {skipped}")  # nothing to compare with
-        if skipped:
-            row = Row(variant.label, skipped=skipped)
-        else:
-            series = _series(scene, variant, equivalence.steps, equivalence.every, out / str(index))
-            if reference is None:
-                reference = series
-            row = _row(variant, series, reference)
-        rows.append(row)
-        say(row.line)
+    skipped = [obstacle(variant) for variant in equivalence.variants]
+    if skipped[0]:
+        raise SolverError(f"{equivalence.variants[0].label}: {skipped[0]}")  # nothing to compare with
+    with ThreadPoolExecutor(cores()) as narrow, ThreadPoolExecutor(1) as wide:
+        def begun(index: int, pool: Executor) -> Future[Table]:
+            variant = equivalence.variants[index]
+            return pool.submit(_series, scene, variant, equivalence.steps, equivalence.every, out / str(index))
+
+        possible = [index for index, why in enumerate(skipped) if not why]
+        series = {index: begun(index, narrow) for index in possible if equivalence.variants[index].alone}
+        wait(series.values())
+        series |= {index: begun(index, wide) for index in possible if index not in series}
+        rows = []
+        try:
+            for index, (variant, why) in enumerate(zip(equivalence.variants, skipped)):
+                rows.append(Row(variant.label, skipped=why) if why else _row(variant, series[index].result(), series[0].result()))
+                say(rows[-1].line)
+        except BaseException:
+            wide.shutdown(cancel_futures=True)
+            raise
     return Matrix(tuple(rows))
