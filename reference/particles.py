@@ -31,13 +31,12 @@ class Wall:
     low: float
     thickness: float
     velocity: np.ndarray
-    extent: tuple[int, float, float] | None = None  # axis, from, to
+    extents: tuple[tuple[int, float, float], ...] = ()  # axis, from, to of each
 
     def holds(self, points: np.ndarray, size: np.ndarray) -> np.ndarray:
         """(n) whether points (n, D) of the box are inside."""
         inside = (points[:, self.axis] - self.low) % size[self.axis] < self.thickness
-        if self.extent:
-            axis, low, high = self.extent
+        for axis, low, high in self.extents:
             inside &= (points[:, axis] > low) & (points[:, axis] < high)
         return inside
 
@@ -109,12 +108,11 @@ def _vector(values: list, dimension: int) -> np.ndarray:
 def _wall(body: dict, dimension: int, number: int) -> Wall:
     at = f"body.{number}"
     axis = "xyz".index(body["axis"]) if "axis" in body else dimension - 1
-    extent = None
-    if "extent" in body:
-        limits = body["extent"]
-        extent = ("xyz".index(limits["axis"]), _number(limits, "from", f"{at}.extent"), _number(limits, "to", f"{at}.extent"))
+    given = body.get("extent", [])
+    extents = tuple(("xyz".index(limits["axis"]), _number(limits, "from", f"{at}.extent"), _number(limits, "to", f"{at}.extent"))
+                    for limits in (given if isinstance(given, list) else [given]))
     velocity = _vector(body.get("velocity", []), dimension)
-    return Wall(axis, _number(body, "position", at), _number(body, "thickness", at), velocity, extent)
+    return Wall(axis, _number(body, "position", at), _number(body, "thickness", at), velocity, extents)
 
 
 def read_particle_scene(scene: dict, sound: bool = True) -> ParticleScene:

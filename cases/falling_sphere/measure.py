@@ -31,7 +31,7 @@ def virtual_mass(run: Run) -> float:
     """The momentum, beyond m_f w, of the fluid in slow relaxation, for w = 1, from the end of a run, where the flow is steady.
 
     It is that of its energy: with the velocity field of the steady flow times w(t), seen from the body, F w = f w +
-    d/dt (1/2 integral of rho u^2), an integral that goes as w^2. No source outside this code has it in space.
+    d/dt (1/2 integral of rho u^2), an integral that goes as w^2. The case sphere_stokes holds that energy against OpenFOAM's.
     """
     release, tail = release_of(run), slice(-max(1, len(run.series) // 10), None)
     w, body, fluid, energy = (float(np.mean(values[tail])) for values in (

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from reference.published import look_up
+from reference.published import look_up, ten_cate
 from verification.measures.curve import Chart, Curve
 from verification.measures.measures import Measures, by_name
 from verification.protocol.quantity import Measured
@@ -29,13 +29,27 @@ def u_max(run: Run) -> Measured:
     return Measured(float(means[first]), scatter, objection)
 
 
+def time_of_fall(run: Run) -> Measured:
+    """Uncertainty: by how much it changes where the ends are found from half of the samples."""
+    time, _, gap = _fall(run)
+    if gap[-1] > (ten_cate.END - ten_cate.WIDTH) * DIAMETER:
+        return Measured(float(time[-1]), 0.0, f"it ends {gap[-1] / DIAMETER:.2g} diameters above the bottom; run longer")
+    value, half = (ten_cate.time_of_fall(time[::every], gap[::every] / DIAMETER) for every in (1, 2))
+    return Measured(value, abs(value - half))
+
+
 def curves(run: Run) -> list[Chart]:
     time, velocity, gap = _fall(run)
     measured = look_up("ten_cate_u_max", run.scene).value
     level = Curve("largest velocity measured", time, np.full_like(time, measured), reference=True)
-    over_gap = Curve("MaPPM", gap / DIAMETER, velocity)
+    heights = [Curve("MaPPM", time, gap / DIAMETER)]
+    try:
+        read_time, read_gap, _ = ten_cate.gap_of(run.scene)
+        heights.insert(0, Curve("measured, read off", read_time, read_gap, reference=True))
+    except ValueError:
+        pass  # of this experiment there is no reading
     return [Chart("Fall of the sphere", "time (s)", "velocity (m/s)", (level, Curve("MaPPM", time, velocity))),
-            Chart("Over the gap below the sphere", "gap / diameter", "velocity (m/s)", (over_gap,))]
+            Chart("Gap below the sphere", "time (s)", "gap / diameter", tuple(heights))]
 
 
-MEASURES = Measures(observables=by_name(u_max), charts=curves)
+MEASURES = Measures(observables=by_name(u_max, time_of_fall), charts=curves)

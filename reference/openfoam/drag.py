@@ -33,8 +33,8 @@ def drag_at(cell: Cell, spacing: float, out: Path) -> Result:
     with tempfile.TemporaryDirectory(prefix="openfoam_") as folder:
         found = problem.run(Path(folder) / "case", n)
         write_field(found.folder, cell, read.volume(found.folder) / (1 - cell.solid), problem.origin, out)
-    drag = Quantity(found.drag, 0.0, note=f"one mesh, N {n}")
-    return Result("OpenFOAM", found.version, inputs=found.checksum, quantities={"drag": drag}, objection=found.objection, field=FIELD)
+    quantities = {name: Quantity(value, 0.0, note=f"one mesh, N {n}") for name, value in (("drag", found.drag), ("energy", found.energy))}
+    return Result("OpenFOAM", found.version, inputs=found.checksum, quantities=quantities, objection=found.objection, field=FIELD)
 
 
 def drag_problem(cell: Cell, end: float | None = None) -> Problem:

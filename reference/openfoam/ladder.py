@@ -87,9 +87,14 @@ def quantity_of(levels: list[Level], note: str, similar: bool) -> Quantity:
 def quantities_of(
     problem: Problem, levels: list[Level], runs: list[LevelRun], stored: Stored | None
 ) -> dict[str, Quantity]:
-    """The drag, and the period where every level sheds."""
+    """The drag; the energy of the flow where it is steady and runs on two levels tell it; the period where every level sheds."""
     if runs[0].history is None:
-        return {problem.quantity: quantity_of(levels, BALANCES, problem.similar)}
+        found = {problem.quantity: quantity_of(levels, BALANCES, problem.similar)}
+        energies = [Level(f"N {run.n}", 1 / run.n, run.energy, run.core_seconds) for run in runs if run.energy is not None]
+        if len(energies) > 1:
+            found["energy"] = quantity_of(energies, "Twice the kinetic energy over the mass of the fluid and the square of its mean velocity.",
+                                          problem.similar)
+        return found
     known = [(run.uncertainty, run.period) for run in runs]
     known += [(level.uncertainty, level.period) for level in stored.levels if level.n > runs[-1].n] if stored else []
     drag = quantity_of(levels, OVER_TIME, problem.similar)

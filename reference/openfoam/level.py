@@ -29,6 +29,7 @@ class LevelRun:
     objection: str = ""
     uncertainty: float = 0.0  # of a mean over time
     period: float | None = None  # sides over superficial velocity
+    energy: float | None = None  # 2 E / (m w^2), E the kinetic energy of the fluid of mass m and w its mean velocity; of a steady run
     history: np.ndarray | None = None  # (n, 3) time in these units, drag, force across; of a transient run
 
 
@@ -64,6 +65,16 @@ def make(folder: Path, cell: Cell, n: int, solver: Solver) -> list[Path]:
     return write_case(folder, cell, solver, patches, block_mesh_dict(mesh))
 
 
+def energy_of(folder: Path) -> float:
+    """2 E / (m w^2) at the last time. Throws FailedRun."""
+    run(folder, "postProcess", "-func", "writeCellVolumes", "-latestTime")
+    last = read.latest(folder)
+    velocity = read.vectors(last / "U")
+    share = read.scalars(last / "V", len(velocity))
+    share = share / share.sum()
+    return float(share @ np.sum(velocity**2, axis=1) / np.sum((share @ velocity) ** 2))
+
+
 def measure(folder: Path, cell: Cell, n: int, checksum: str, seconds: float) -> LevelRun:
     """Runs simpleFoam on a case whose mesh is made, and reads the drag. Throws FailedRun."""
     seconds += run(folder, "checkMesh") + run(folder, "simpleFoam")
@@ -71,7 +82,7 @@ def measure(folder: Path, cell: Cell, n: int, checksum: str, seconds: float) -> 
     drag = float(read.gradients(folder, "simpleFoam")[-1] * drag_scale(cell, fluid_volume))
     say(f"N {n}: drag {drag:.7g}, {seconds:.1f} core-seconds")
     version = read.version(folder, "simpleFoam")
-    return LevelRun(n, drag, seconds, checksum, version, folder, steady_objection(folder, cell, fluid_volume))
+    return LevelRun(n, drag, seconds, checksum, version, folder, steady_objection(folder, cell, fluid_volume), energy=energy_of(folder))
 
 
 def run_level(folder: Path, cell: Cell, n: int) -> LevelRun:

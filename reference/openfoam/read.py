@@ -7,6 +7,7 @@ import numpy as np
 
 GRADIENT = re.compile(r"Pressure gradient source: uncorrected Ubar = (\S+), pressure gradient = (\S+)")
 VOLUME = re.compile(r"Total volume = (\S+?)\.\s")
+UNIFORM_SCALAR = re.compile(r"^internalField\s+uniform\s+([^;\s(]+);", re.MULTILINE)
 UNIFORM = re.compile(r"^internalField\s+uniform\s+\(([^)]*)\)", re.MULTILINE)
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
@@ -66,3 +67,12 @@ def vectors(file: Path, cells: int = 1) -> np.ndarray:
     end = text.index("\n)", begin)
     inner = text[begin + 1 : end].replace("(", " ").replace(")", " ")
     return np.array(inner.split(), float).reshape(-1, 3)
+
+
+def scalars(file: Path, cells: int = 1) -> np.ndarray:
+    """(cells,) the inner values of a scalar field; `cells` counts where they are all the same."""
+    text = file.read_text()
+    if uniform := UNIFORM_SCALAR.search(text):
+        return np.full(cells, float(uniform[1]))
+    begin = text.index("(", text.index("nonuniform List<scalar>"))
+    return np.array(text[begin + 1 : text.index("\n)", begin)].split(), float)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reference.exact_flows import gap_between
-from reference.particles import ParticleScene, Wall
+from reference.particles import ParticleScene
 from verification.protocol.adapter import Cannot
 
 SAME = 1e-3  # of the spacing: faces of walls that are this close meet
@@ -36,9 +36,8 @@ class Room:
         return np.stack(mesh, axis=-1).reshape(-1, len(axes))
 
 
-def _covers(wall: Wall, low: float, width: float, side: float, near: float) -> bool:
-    """Whether a limited wall reaches over the gap from `low` on along the axis of its limits."""
-    _, start, end = wall.extent
+def _covers(start: float, end: float, low: float, width: float, side: float, near: float) -> bool:
+    """Whether a wall from `start` to `end` reaches over the gap from `low` on."""
     before = (low - start + near) % side - near  # of the gap's start, from the start of the wall
     return before >= -near and before + width <= end - start + near
 
@@ -55,9 +54,8 @@ def room_of(scene: ParticleScene) -> Room:
         origin[axis] = 0.0 if scene.size[axis] - start < near else start
         walls[axis] = (across[below].velocity, across[above].velocity)
     for wall in scene.walls:
-        if wall.extent:
-            along = wall.extent[0]
-            if not _covers(wall, float(origin[along]), float(size[along]), float(scene.size[along]), near):
+        for along, start, end in wall.extents:
+            if not _covers(start, end, float(origin[along]), float(size[along]), float(scene.size[along]), near):
                 raise Cannot("a wall that ends within the fluid: this code has rooms whose walls reach from side to side")
     cells = np.maximum(np.round(size / scene.spacing), 1).astype(int)
     return Room(origin, size, cells, walls)

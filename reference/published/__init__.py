@@ -10,6 +10,7 @@ TABLES = {
     "isolated_sphere": sphere.isolated_sphere,
     "random_spheres": random_arrays.random_spheres,
     "ten_cate_u_max": ten_cate.largest_velocity,
+    "ten_cate_fall": ten_cate.fall,
     "kharaz_restitution": impacts.kharaz_restitution,
     "kharaz_spin": impacts.kharaz_spin,
 }

@@ -291,14 +291,17 @@ void RunLoop<D>::write_record_of_failure(const std::string& state, const std::st
   }
 }
 
+/// To standard output. Where that fails, check_standard_output tells at the end: a run is not lost for it.
+void say(const std::string& text) { std::fputs(text.c_str(), stdout); }
+
 template <int D>
 void RunLoop<D>::say_begin() {
   const RunRecord& record = recorder_.record();
   for (const std::string& warning : setup_.warnings) fmt::print(stderr, "warning: {}\n", warning);
   if (!setup_.options.quiet)
-    fmt::print("{}: steps {} to {} {}, {} particles, about {} of memory, terms: {}; output in {}\n", record.scene_name,
-               first_step_, last_step_, step_text(), record.particles, setup_.memory,
-               fmt::join(term_names(record.terms), ", "), folder_.string());
+    say(fmt::format("{}: steps {} to {} {}, {} particles, about {} of memory, terms: {}; output in {}\n",
+                    record.scene_name, first_step_, last_step_, step_text(), record.particles, setup_.memory,
+                    fmt::join(term_names(record.terms), ", "), folder_.string()));
   std::fflush(stdout);
 }
 
@@ -306,9 +309,9 @@ template <int D>
 void RunLoop<D>::say_end(const std::string& message) {
   const RunRecord& record = recorder_.record();
   progress_->finish();
-  if (!message.empty()) fmt::print("stopped at step {}; {}\n", record.step, message);
-  fmt::print("digest {} step {} particles {} ranks {} particle-steps/s {:.4g}\n", record.digest, record.step,
-             record.particles, record.ranks, record.rate);
+  if (!message.empty()) say(fmt::format("stopped at step {}; {}\n", record.step, message));
+  say(fmt::format("digest {} step {} particles {} ranks {} particle-steps/s {:.4g}\n", record.digest, record.step,
+                  record.particles, record.ranks, record.rate));
   std::fflush(stdout);
 }
 

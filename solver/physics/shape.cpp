@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "physics/kernel.hpp"
 #include "physics/matter.hpp"
@@ -118,14 +119,21 @@ void set_union_mass(Shape<D>& shape, double density) {
   shape.inverse_inertia = inverse_inertia(moments, density);
 }
 
-/// The sheets of FPs of a wall from its lower to its upper face, at distances `below` and `above` from its ends: depth,
-/// normal and own_density of their FPs.
+/// Distances of a column of FPs from the ends of its wall along an axis.
+struct FromEnds {
+  double below = HUGE_VAL, above = HUGE_VAL;
+};
+
+/// The sheets of FPs of a wall from its lower to its upper face, in a column with these distances from its ends along
+/// other axes: depth, normal and own_density of their FPs.
 template <int D, class Kernel>
-std::vector<FrozenParticle<D>> make_sheets(int axis, double thickness, int count, double below, double above,
-                                           const FrozenLayer& layer) {
+std::vector<FrozenParticle<D>> make_sheets(int axis, double thickness, int count,
+                                           const std::array<FromEnds, D - 1>& from_ends, const FrozenLayer& layer) {
   const auto quadrature = SupportQuadrature<D>::of(Kernel{});
   const auto depth_at = [&](const Vec<D, double>& x) {
-    return std::min({x[0], thickness - x[0], below + x[1], above - x[1]});
+    double depth = std::min(x[0], thickness - x[0]);
+    for (int a = 1; a < D; ++a) depth = std::min({depth, from_ends[a - 1].below + x[a], from_ends[a - 1].above - x[a]});
+    return depth;
   };
   std::vector<FrozenParticle<D>> sheets(count);
   for (int i = 0; i < count; ++i) {
@@ -162,7 +170,7 @@ Shape<D> make_body(std::vector<Ball<D>> balls, double density, const FrozenLayer
 
 template <int D, class Kernel>
 Shape<D> make_wall_piece(int axis, const std::array<double, D>& sides, const std::array<double, D>& spacing,
-                         const FrozenLayer& layer, const WallEnds& ends) {
+                         const FrozenLayer& layer, const WallEnds<D>& ends) {
   Shape<D> shape;
   shape.rotates = false;
   shape.volume = 1.0;
@@ -178,14 +186,8 @@ Shape<D> make_wall_piece(int axis, const std::array<double, D>& sides, const std
   shape.mass = layer.number_density * shape.volume;
   shape.reach = 0.5 * std::sqrt(square);
 
-  std::vector<std::vector<FrozenParticle<D>>> sheets;  // by column, as seen from the ends; else for all
-  const bool ended = ends.below || ends.above;
-  for (int column = 0; column < (ended ? count[ends.axis] : 1); ++column) {
-    const double spacing_along = sides[ends.axis] / count[ends.axis];
-    const double below = ends.below ? (column + 0.5) * spacing_along : HUGE_VAL;
-    const double above = ends.above ? (count[ends.axis] - column - 0.5) * spacing_along : HUGE_VAL;
-    sheets.push_back(make_sheets<D, Kernel>(axis, sides[axis], count[axis], below, above, layer));
-  }
+  // By column as the ends see it: along an axis without an end all columns are one.
+  std::map<std::array<int, D>, std::vector<FrozenParticle<D>>> sheets;
   for (int node = 0; node < nodes; ++node) {
     int index[D];
     int rest = node;
@@ -193,7 +195,19 @@ Shape<D> make_wall_piece(int axis, const std::array<double, D>& sides, const std
       index[a] = rest % count[a];
       rest /= count[a];
     }
-    FrozenParticle<D> point = sheets[ended ? index[ends.axis] : 0][index[axis]];
+    std::array<int, D> column{};
+    std::array<FromEnds, D - 1> from_ends{};
+    for (int a = 0, ended = 0; a < D; ++a) {
+      if (!ends.below[a] && !ends.above[a]) continue;
+      const double cell = sides[a] / count[a];
+      column[a] = index[a];
+      if (ends.below[a]) from_ends[ended].below = (index[a] + 0.5) * cell;
+      if (ends.above[a]) from_ends[ended].above = (count[a] - index[a] - 0.5) * cell;
+      ++ended;
+    }
+    std::vector<FrozenParticle<D>>& sheet = sheets[column];
+    if (sheet.empty()) sheet = make_sheets<D, Kernel>(axis, sides[axis], count[axis], from_ends, layer);
+    FrozenParticle<D> point = sheet[index[axis]];
     if (point.depth >= layer.thickness) continue;
     for (int a = 0; a < D; ++a) point.offset[a] = (2 * index[a] + 1 - count[a]) * (0.5 * sides[a] / count[a]);
     shape.frozen.push_back(point);
@@ -210,11 +224,11 @@ template Shape<2> make_body<2, MpsWeight>(std::vector<Ball<2>>, double, const Fr
 template Shape<3> make_body<3, WendlandC2>(std::vector<Ball<3>>, double, const FrozenLayer&);
 template Shape<3> make_body<3, Lucy>(std::vector<Ball<3>>, double, const FrozenLayer&);
 template Shape<3> make_body<3, MpsWeight>(std::vector<Ball<3>>, double, const FrozenLayer&);
-template Shape<2> make_wall_piece<2, WendlandC2>(int, Lengths<2>, Lengths<2>, const FrozenLayer&, const WallEnds&);
-template Shape<2> make_wall_piece<2, Lucy>(int, Lengths<2>, Lengths<2>, const FrozenLayer&, const WallEnds&);
-template Shape<2> make_wall_piece<2, MpsWeight>(int, Lengths<2>, Lengths<2>, const FrozenLayer&, const WallEnds&);
-template Shape<3> make_wall_piece<3, WendlandC2>(int, Lengths<3>, Lengths<3>, const FrozenLayer&, const WallEnds&);
-template Shape<3> make_wall_piece<3, Lucy>(int, Lengths<3>, Lengths<3>, const FrozenLayer&, const WallEnds&);
-template Shape<3> make_wall_piece<3, MpsWeight>(int, Lengths<3>, Lengths<3>, const FrozenLayer&, const WallEnds&);
+template Shape<2> make_wall_piece<2, WendlandC2>(int, Lengths<2>, Lengths<2>, const FrozenLayer&, const WallEnds<2>&);
+template Shape<2> make_wall_piece<2, Lucy>(int, Lengths<2>, Lengths<2>, const FrozenLayer&, const WallEnds<2>&);
+template Shape<2> make_wall_piece<2, MpsWeight>(int, Lengths<2>, Lengths<2>, const FrozenLayer&, const WallEnds<2>&);
+template Shape<3> make_wall_piece<3, WendlandC2>(int, Lengths<3>, Lengths<3>, const FrozenLayer&, const WallEnds<3>&);
+template Shape<3> make_wall_piece<3, Lucy>(int, Lengths<3>, Lengths<3>, const FrozenLayer&, const WallEnds<3>&);
+template Shape<3> make_wall_piece<3, MpsWeight>(int, Lengths<3>, Lengths<3>, const FrozenLayer&, const WallEnds<3>&);
 
 }  // namespace mappm

@@ -21,10 +21,10 @@ struct FrozenLayer {
 template <int D, class Kernel>
 Shape<D> make_body(std::vector<Ball<D>> balls, double density, const FrozenLayer& layer);
 
-/// Whether a wall ends with a piece, at its lower and at its upper side along `axis`.
+/// Whether a wall ends with a piece, at its lower and at its upper side along each axis.
+template <int D>
 struct WallEnds {
-  int axis = 0;
-  bool below = false, above = false;
+  std::array<bool, D> below{}, above{};
 };
 
 /// A piece of a plane wall, normal to `axis`: `sides` are its lengths (in the normal direction the wall's thickness).
@@ -34,6 +34,6 @@ struct WallEnds {
 /// an end own_density is that of a layer which ends there.
 template <int D, class Kernel>
 Shape<D> make_wall_piece(int axis, const std::array<double, D>& sides, const std::array<double, D>& spacing,
-                         const FrozenLayer& layer, const WallEnds& ends = {});
+                         const FrozenLayer& layer, const WallEnds<D>& ends = {});
 
 }  // namespace mappm

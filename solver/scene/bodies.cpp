@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -120,22 +122,37 @@ void read_velocities(const Fields& table, std::size_t count, BodyScene& body) {
 }
 
 /// None for an extent that fills the box.
-std::optional<BodyScene::Extent> read_extent(const Fields& wall, const Scene& scene, int normal) {
-  const std::optional<Fields> table = wall.table("extent");
-  if (!table) return {};
+std::optional<BodyScene::Extent> read_extent(const Fields& table, const Scene& scene, int normal) {
   BodyScene::Extent extent;
-  extent.axis = table->axis("axis");
-  extent.from = table->number("from", Quantity::length, Sign::not_negative);
-  extent.to = table->number("to", Quantity::length, Sign::positive);
-  table->finish();
-  if (extent.axis == normal) table->fail("axis", "is the wall's normal; write an axis along the wall");
-  if (extent.from >= extent.to) table->fail("from", fmt::format("must be less than to = {}", extent.to));
+  extent.key = table.path("");
+  extent.key.pop_back();
+  extent.axis = table.axis("axis");
+  extent.from = table.number("from", Quantity::length, Sign::not_negative);
+  extent.to = table.number("to", Quantity::length, Sign::positive);
+  table.finish();
+  if (extent.axis == normal) table.fail("axis", "is the wall's normal; write an axis along the wall");
+  if (extent.from >= extent.to) table.fail("from", fmt::format("must be less than to = {}", extent.to));
   const double side = scene.box[static_cast<std::size_t>(extent.axis)];
   const double rounding = 1e-6 * scene.fluid.spacing;
   if (extent.to > side + rounding)
-    table->fail("to", fmt::format("lies outside the box [0, {}]; a wall cannot go on across its border", side));
+    table.fail("to", fmt::format("lies outside the box [0, {}]; a wall cannot go on across its border", side));
   if (extent.from <= rounding && extent.to >= side - rounding) return {};
   return extent;
+}
+
+/// One table, or a list of them.
+std::vector<BodyScene::Extent> read_extents(const Fields& wall, const Scene& scene, int normal) {
+  std::vector<BodyScene::Extent> extents;
+  std::array<bool, 3> limited{};
+  for (const Fields& table : wall.table_or_tables("extent")) {
+    const std::optional<BodyScene::Extent> extent = read_extent(table, scene, normal);
+    const auto axis = static_cast<std::size_t>(table.axis("axis"));
+    if (limited[axis]) table.fail("axis", "limits the wall along one axis twice; keep one of the two tables");
+    limited[axis] = true;
+    if (extent) extents.push_back(*extent);
+  }
+  std::sort(extents.begin(), extents.end(), [](const auto& a, const auto& b) { return a.axis < b.axis; });
+  return extents;
 }
 
 void read_wall(const Fields& table, const Scene& scene, BodyScene& body) {
@@ -147,12 +164,13 @@ void read_wall(const Fields& table, const Scene& scene, BodyScene& body) {
     table.fail("position", fmt::format("lies outside the box [0, {}); move it inside", scene.box[axis]));
   if (body.thickness >= scene.box[axis])
     table.fail("thickness", fmt::format("fills the box side {}; make the wall thinner", scene.box[axis]));
-  body.extent = read_extent(table, scene, body.axis);
+  body.extents = read_extents(table, scene, body.axis);
   read_velocities(table, 1, body);
   if (body.velocities.front()[axis] != 0.0)
     table.fail("velocity", "a wall moves along itself only; set its normal component to 0");
-  if (body.extent && body.velocities.front()[static_cast<std::size_t>(body.extent->axis)] != 0.0)
-    table.fail("velocity", "a wall does not move along its extent; set that component to 0");
+  for (const BodyScene::Extent& extent : body.extents)
+    if (body.velocities.front()[static_cast<std::size_t>(extent.axis)] != 0.0)
+      table.fail("velocity", "a wall does not move along its extent; set that component to 0");
 }
 
 BodyScene read_body(const Fields& table, const Scene& scene, std::optional<Packing>& packing) {

@@ -250,4 +250,11 @@ std::vector<Fields> Fields::tables(const std::string& key) const {
   return result;
 }
 
+std::vector<Fields> Fields::table_or_tables(const std::string& key) const {
+  const toml::node* node = find(key);
+  if (node && node->is_array()) return tables(key);
+  const std::optional<Fields> one = table(key);
+  return one ? std::vector{*one} : std::vector<Fields>{};
+}
+
 }  // namespace mappm

@@ -74,6 +74,8 @@ class Fields {
   std::optional<Fields> table(const std::string& key) const;
   Fields required_table(const std::string& key) const;
   std::vector<Fields> tables(const std::string& key) const;  // of [[key]]
+  std::vector<Fields> table_or_tables(
+      const std::string& key) const;  // of [key], which counts as a list of one, or of [[key]]
 
   /// Throws InputError for the first key that was not asked for, and names the nearest one that was.
   void finish() const;

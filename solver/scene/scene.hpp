@@ -78,15 +78,16 @@ struct BodyScene {
   std::vector<Triple> angular_velocities;  // one per position; in the plane only the last entry is used
   bool rotates = true;                     // false: the orientation is held
   // wall: a plane layer normal to `axis`, from `position` to `position + thickness`; along itself it fills the box, or
-  // along one axis its extent
+  // its extent where it has one along that axis
   int axis = 1;
   double position = 0.0;
   double thickness = 0.0;
   struct Extent {
+    std::string key;  // "body.0.extent", for messages
     int axis = 0;
     double from = 0.0, to = 0.0;
   };
-  std::optional<Extent> extent;
+  std::vector<Extent> extents;  // by axis, ascending, at most one along each
 };
 
 struct ContactScene {

@@ -56,14 +56,23 @@ std::uint64_t pieces_of(const Scene& scene, const BodyScene& wall, const Lattice
 /// What no fluid sees needs no FPs; of a wall without fluid its faces are left, which solids touch.
 bool has_pieces(const Scene& scene, const BodyScene& body) { return is_wall(body) && scene.fluid.particles; }
 
-/// Kinds of pieces of a wall: one, but for a limited wall, which has a first, a last and, between them, a middle one.
+/// Kinds of pieces along an extent of a wall: a first, a last and, between them, a middle one.
 template <int D>
-std::uint64_t kinds_of_pieces(const Scene& scene, const BodyScene& wall, const Lattice<D>& lattice) {
-  if (!has_pieces(scene, wall) || !wall.extent) return 1;
-  return std::min<std::uint64_t>(3, pieces_of(scene, wall, lattice, wall.extent->axis));
+std::uint64_t kinds_along(const Scene& scene, const BodyScene& wall, const Lattice<D>& lattice,
+                          const BodyScene::Extent& extent) {
+  return std::min<std::uint64_t>(3, pieces_of(scene, wall, lattice, extent.axis));
 }
 
-/// Piece number `piece` of `pieces` along the extent: 0 the first, 1 the last, 2 one between.
+/// Kinds of pieces of a wall: one, but for a limited wall. Kinds along its first extent run first.
+template <int D>
+std::uint64_t kinds_of_pieces(const Scene& scene, const BodyScene& wall, const Lattice<D>& lattice) {
+  std::uint64_t kinds = 1;
+  if (has_pieces(scene, wall))
+    for (const BodyScene::Extent& extent : wall.extents) kinds *= kinds_along(scene, wall, lattice, extent);
+  return kinds;
+}
+
+/// Piece number `piece` of `pieces` along an extent: 0 the first, 1 the last, 2 one between.
 std::uint64_t kind_of_piece(std::uint64_t piece, std::uint64_t pieces) {
   return piece == 0 ? 0 : piece + 1 == pieces ? 1 : 2;
 }
@@ -71,10 +80,12 @@ std::uint64_t kind_of_piece(std::uint64_t piece, std::uint64_t pieces) {
 template <int D>
 Shape<D> make_wall_shape(const Scene& scene, const BodyScene& wall, const Model<D>& model, const Lattice<D>& lattice,
                          std::uint64_t kind) {
-  WallEnds ends;
-  if (wall.extent) {
-    const bool alone = kinds_of_pieces(scene, wall, lattice) == 1;
-    ends = {wall.extent->axis, kind == 0, kind == 1 || alone};
+  WallEnds<D> ends;
+  for (const BodyScene::Extent& extent : wall.extents) {
+    const std::uint64_t kinds = kinds_along(scene, wall, lattice, extent);
+    ends.below[extent.axis] = kind % kinds == 0;
+    ends.above[extent.axis] = kind % kinds == 1 || kinds == 1;
+    kind /= kinds;
   }
   FrozenLayer layer{model.spacing, model.rest_density};
   // What is seen of a wall by the FPs of one that touches it lies deeper than what the fluid sees.
@@ -143,6 +154,7 @@ void place_wall(const Scene& scene, std::size_t index, const Lattice<D>& lattice
     const auto body = static_cast<std::uint32_t>(index);
     PlacedSolid<D> solid{body, body, group, 0, {}};
     std::uint64_t rest = piece;
+    std::uint64_t kind = 0, kinds = 1;
     for (int axis = 0; axis < D; ++axis) {
       const std::uint64_t number = rest % pieces[axis];
       const WallSide side = side_of(scene, wall, axis);
@@ -153,11 +165,12 @@ void place_wall(const Scene& scene, std::size_t index, const Lattice<D>& lattice
       else {
         const double part = (static_cast<double>(number) + 0.5) / static_cast<double>(pieces[axis]);
         solid.x[axis] = to_quanta(side.first + part * side.length, scene.box[static_cast<std::size_t>(axis)]);
-        if (const std::uint64_t kind = kind_of_piece(number, pieces[axis]); kind > 0)
-          solid.shape = further_shapes + static_cast<std::uint32_t>(kind - 1);
+        kind += kinds * kind_of_piece(number, pieces[axis]);
+        kinds *= kinds_along(scene, wall, lattice, *extent_along(wall, axis));
       }
       rest /= pieces[axis];
     }
+    if (kind > 0) solid.shape = further_shapes + static_cast<std::uint32_t>(kind - 1);
     solids.push_back(solid);
   }
 }

@@ -33,14 +33,14 @@ bool overlap(const Scene& scene, const BodyScene& a, const BodyScene& b) {
   return true;
 }
 
-/// Whether `b` covers the end of `a` along `a.extent`, the upper one or the lower.
-bool closes(const Scene& scene, const BodyScene& a, const BodyScene& b, bool upper) {
+/// Whether `b` covers the end of `a` along an extent of it, the upper one or the lower.
+bool closes(const Scene& scene, const BodyScene& a, const BodyScene::Extent& extent, const BodyScene& b, bool upper) {
   const double tolerance = touch * scene.fluid.spacing;
-  const int along = a.extent->axis;
+  const int along = extent.axis;
   for (int axis = 0; axis < scene.dimension; ++axis) {
     const WallSide one = side_of(scene, a, axis), other = side_of(scene, b, axis);
     if (axis == along) {
-      const double end = upper ? a.extent->to : a.extent->from;
+      const double end = upper ? extent.to : extent.from;
       const double face = upper ? other.first : other.first + other.length;
       if (other.whole || std::fabs(nearest_image(end - face, scene.box[at(axis)])) > tolerance) return false;
     } else if (!other.whole && (one.whole || distance_of_middles(scene, one, other, axis) >
@@ -51,14 +51,14 @@ bool closes(const Scene& scene, const BodyScene& a, const BodyScene& b, bool upp
   return true;
 }
 
-void check_ends(const Scene& scene, const BodyScene& wall) {
+void check_ends(const Scene& scene, const BodyScene& wall, const BodyScene::Extent& extent) {
   for (const bool upper : {false, true}) {
     const auto closed = [&](const BodyScene& other) {
-      return is_wall(other) && &other != &wall && closes(scene, wall, other, upper);
+      return is_wall(other) && &other != &wall && closes(scene, wall, extent, other, upper);
     };
     if (std::any_of(scene.bodies.begin(), scene.bodies.end(), closed)) continue;
-    throw InputError(scene.file, wall.key + (upper ? ".extent.to" : ".extent.from"),
-                     fmt::format("{}", upper ? wall.extent->to : wall.extent->from),
+    throw InputError(scene.file, extent.key + (upper ? ".to" : ".from"),
+                     fmt::format("{}", upper ? extent.to : extent.from),
                      "this end of the wall is open to the fluid; let it touch one wall that covers it");
   }
 }
@@ -67,7 +67,8 @@ void check_ends(const Scene& scene, const BodyScene& wall) {
 
 WallSide side_of(const Scene& scene, const BodyScene& wall, int axis) {
   if (axis == wall.axis) return {wall.position, wall.thickness, false};
-  if (wall.extent && axis == wall.extent->axis) return {wall.extent->from, wall.extent->to - wall.extent->from, false};
+  if (const BodyScene::Extent* extent = extent_along(wall, axis))
+    return {extent->from, extent->to - extent->from, false};
   return {0.0, scene.box[at(axis)], true};
 }
 
@@ -77,10 +78,20 @@ double distance_to_wall(const Scene& scene, const BodyScene& wall, const Triple&
     const double middle = side.first + 0.5 * side.length;
     return std::fabs(nearest_image(x[at(axis)] - middle, scene.box[at(axis)])) - 0.5 * side.length;
   };
-  const double across = distance(wall.axis);
-  if (!wall.extent) return across;
-  const double beyond = distance(wall.extent->axis);
-  return across > 0.0 && beyond > 0.0 ? std::sqrt(across * across + beyond * beyond) : std::max(across, beyond);
+  double inside = distance(wall.axis);
+  double outside = std::max(inside, 0.0);
+  for (const BodyScene::Extent& extent : wall.extents) {
+    const double beyond = distance(extent.axis);
+    inside = std::max(inside, beyond);
+    outside = std::hypot(outside, std::max(beyond, 0.0));
+  }
+  return inside > 0.0 ? outside : inside;
+}
+
+const BodyScene::Extent* extent_along(const BodyScene& wall, int axis) {
+  for (const BodyScene::Extent& extent : wall.extents)
+    if (extent.axis == axis) return &extent;
+  return nullptr;
 }
 
 std::uint64_t lattice_nodes(const Scene& scene, int axis) {
@@ -101,7 +112,7 @@ bool fits_lattice(const Scene& scene, const BodyScene& wall) {
 
 const BodyScene* limited_wall(const Scene& scene) {
   for (const BodyScene& body : scene.bodies)
-    if (is_wall(body) && body.extent) return &body;
+    if (is_wall(body) && !body.extents.empty()) return &body;
   return nullptr;
 }
 
@@ -124,7 +135,7 @@ void check_walls(const Scene& scene) {
                       "lattice spacing; move them or change fluid.spacing",
                       limited->key));
   for (const BodyScene* wall : walls)
-    if (wall->extent) check_ends(scene, *wall);
+    for (const BodyScene::Extent& extent : wall->extents) check_ends(scene, *wall, extent);
 }
 
 }  // namespace mappm

@@ -1,5 +1,5 @@
 // Walls as boxes: where each stands, and which sets of walls can be. A wall fills the box along its own plane, or is
-// limited along one axis of it. Private to reader and builder.
+// limited along axes of it. Private to reader and builder.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -26,6 +26,9 @@ std::uint64_t lattice_nodes(const Scene& scene, int axis);
 
 /// Whether all surfaces of a wall lie between two rows of nodes.
 bool fits_lattice(const Scene& scene, const BodyScene& wall);
+
+/// Its extent along an axis, or null.
+const BodyScene::Extent* extent_along(const BodyScene& wall, int axis);
 
 /// The first limited wall, or null.
 const BodyScene* limited_wall(const Scene& scene);

@@ -14,6 +14,7 @@ from reference.openfoam.cell import Cell, cell_of
 from reference.openfoam.drag import drag_problem
 from reference.openfoam.read import vectors
 from reference.openfoam.run import missing_of, run
+from reference.stokes.unsteady_array import virtual_mass
 from verification.protocol.quantity import Result, read_result
 
 EXACT = 24.831675  # F / (mu U) at a solids fraction of 0.1, Stokes flow: a collocation solver without a mesh
@@ -54,6 +55,15 @@ def errors(folder: Path, cell: Cell, levels: tuple[int, ...]) -> list[float]:
     """Relative, of levels of one disc."""
     problem = drag_problem(cell)
     return [problem.run(folder / f"n_{n}", n).drag / EXACT - 1 for n in levels]
+
+
+def test_the_energy_of_the_flow_is_that_of_the_exact_one(tmp_path: Path) -> None:
+    """Of Stokes flow through the square array, from the derivative of its impedance: no field is integrated there."""
+    exact = 1 + virtual_mass(0.1) / (1 - 0.1)
+    coarse, fine = (drag_problem(CELL).run(tmp_path / f"n_{n}", n).energy / exact - 1 for n in (8, 16))
+    assert abs(fine) < 0.4 * abs(coarse) and abs(fine) < 5e-3
+    found = drag(tmp_path, "--levels", "8,16").quantities["energy"]
+    assert found.value == pytest.approx(exact, rel=1e-3) and abs(found.value - exact) < 3 * found.uncertainty
 
 
 def test_stokes_drag_is_of_second_order_and_right(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from reference.openfoam.__main__ import main
 from reference.openfoam.blocks import BODY, BlockMesh, block_mesh_dict, box_mesh, disc_mesh, sphere_mesh
 from reference.openfoam.cell import cell_of, read_cell
 from reference.openfoam.plane_mesh import geometry
-from reference.openfoam.read import gradients, latest, vectors
+from reference.openfoam.read import gradients, latest, scalars, vectors
 from reference.openfoam.shift import clear_cuts
 from reference.openfoam.store import FOLDER, disagreement, find_stored, read_stored
 from reference.openfoam.transient import analyse, transient_for
@@ -258,6 +258,13 @@ def test_logs_and_fields_are_read(tmp_path: Path) -> None:
     assert latest(tmp_path).name == "10"
     (tmp_path / "U").write_text("internalField nonuniform List<vector> \n2\n(\n(1 2 3)\n(4 5e-1 -6)\n)\n;\nboundary\n")
     assert vectors(tmp_path / "U").tolist() == [[1, 2, 3], [4, 0.5, -6]]
+
+
+def test_scalars_are_read_as_openfoam_writes_them(tmp_path: Path) -> None:
+    (tmp_path / "V").write_text("dimensions [0 3 0 0 0 0 0];\n\ninternalField   nonuniform List<scalar>\n3\n(\n1\n2.5e-1\n3\n)\n;\n\nboundaryField\n{\n}\n")
+    assert scalars(tmp_path / "V").tolist() == [1, 0.25, 3]
+    (tmp_path / "V").write_text("internalField   uniform 0.125;\n")
+    assert scalars(tmp_path / "V", 2).tolist() == [0.125, 0.125]
 
 
 STORED = sorted(FOLDER.glob("*.json"))

@@ -52,6 +52,19 @@ def test_a_cavity_has_walls_on_all_sides() -> None:
     assert set(room.walls) == {0, 1}
 
 
+def room_in_space(*extents: dict) -> ParticleScene:
+    """A closed room of unit sides, whose walls along y are limited as given."""
+    sides = [wall("z", 1.0), wall("x", 1.0, extent={"axis": "z", "from": 0.0, "to": 1.0}), wall("y", 1.0, extent=list(extents))]
+    return scene_of(box__size=[1.25] * 3, body=sides)
+
+
+def test_a_wall_may_be_limited_along_two_axes() -> None:
+    room = room_of(room_in_space({"axis": "x", "from": 0.0, "to": 1.0}, {"axis": "z", "from": 0.0, "to": 1.0}))
+    assert set(room.walls) == {0, 1, 2} and room.size == pytest.approx([1, 1, 1]) and room.count == 512
+    with pytest.raises(Cannot, match="ends within the fluid"):
+        room_of(room_in_space({"axis": "x", "from": 0.0, "to": 1.0}, {"axis": "z", "from": 0.0, "to": 0.9}))
+
+
 @pytest.mark.parametrize("extent", [{"axis": "y", "from": 0.0, "to": 0.9}, {"axis": "y", "from": 0.1, "to": 1.0}])
 def test_a_side_that_leaves_a_hole_is_refused(extent: dict) -> None:
     with pytest.raises(Cannot, match="ends within the fluid"):

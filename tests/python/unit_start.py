@@ -86,10 +86,11 @@ def test_the_memory_foretold_is_about_what_is_taken(tmp_path: Path, ranks: int) 
     assert (large[0] - small[0]) / (large[1] - small[1]) == pytest.approx(1.0, abs=0.35)
 
 
+@pytest.mark.parametrize("buffer", [(), ("stdbuf", "-oL")])  # that of a file, and that of a terminal, which fails at once
 @pytest.mark.parametrize("ranks", [0, 1])
-def test_standard_output_that_is_full_is_an_error(tmp_path: Path, ranks: int) -> None:
+def test_standard_output_that_is_full_is_an_error(tmp_path: Path, ranks: int, buffer: tuple[str, ...]) -> None:
     with open("/dev/full", "w") as full:
-        error = only_error(call(Options(ranks=ranks, steps=2), tmp_path, stdout=full))
+        error = only_error(call(Options(ranks=ranks, steps=2), tmp_path, *buffer, stdout=full))
         assert "standard output" in error
         for words in (["--version"], ["run", "--help"]):
             said = subprocess.run([program("mappm"), *words], stdout=full, stderr=subprocess.DEVNULL)

@@ -81,7 +81,7 @@ def of_families(cases: list[Case]) -> list[tuple[str, Case]]:
     found: dict[str, Case] = {}
     for case in cases:
         held = found.get(case.family)
-        if held is None or _bands(case) > _bands(held):
+        if held is None or (len(case.observables), _bands(case)) > (len(held.observables), _bands(held)):
             found[case.family] = case
     others = [(case.name, case) for case in cases if case.observables and _bands(case) != _bands(found[case.family])]
     return [*found.items(), *others]

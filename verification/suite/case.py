@@ -67,6 +67,7 @@ class Observable:
     live: str = ""  # quantity of the reference code that is run for this case
     published: str = ""  # table of reference/published
     code_to_code: bool = False  # the reference is another code with the same law
+    points: tuple[str, ...] = ()  # of the case, at which it is judged; all where empty
     needs: tuple[str, ...] = ()  # capabilities beside those that the scene asks for
     skipped: str = ""  # why it is not judged: a reference that is not installed, or a code that cannot do it
     unusable: str = ""  # why the reference that there is cannot serve

@@ -4,7 +4,8 @@ A value is held against its reference by ASME V&V 20: u_val = sqrt(u_num^2 + u_r
 bounds halved, and k from Student's t where a source is the scatter of a few starts (student.py). With the goal of the manifest:
 
 VALIDATED      |E| <= k u_val <= goal
-WITHIN GOAL    |E| <= goal, but k u_val > goal, or no uncertainty is known: nothing contradicts, nothing is resolved
+WITHIN GOAL    |E| <= goal, but k u_val > goal, or no uncertainty is known, as where one of the runs that it is estimated from may
+               not be used: nothing contradicts, nothing is resolved
 FAILED         |E| > k u_val, or |E| > goal
 CODE-TO-CODE   |E| <= goal, the reference being another code with the same law: a check of programming, no validation
 INCONCLUSIVE   the value or the reference may not be used: forces out of balance, a reference code that failed, no number on a
@@ -12,7 +13,7 @@ INCONCLUSIVE   the value or the reference may not be used: forces out of balance
 SKIPPED        the reference or the capability is not there
 
 Where the reference is 0 the value is itself an error, a norm for instance. It need not lie within its own uncertainty, as no limit
-of it can be below 0: with |E| > k u_val it is WITHIN GOAL. A value that must be met exactly, with a goal of 0, is VALIDATED where it is met.
+of it can be below 0: with |E| > k u_val it is WITHIN GOAL, unless it is below 0 and so no norm. A value that must be met exactly, with a goal of 0, is VALIDATED where it is met.
 
 Where the finest level starts from a bare lattice and the scatter of disordered starts is known, the mean of these is judged as
 well, as a value of its own.
@@ -21,7 +22,7 @@ What levels show is in ladder.py. DIVERGING fails whatever the error; a band tha
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -55,6 +56,7 @@ class Outcome:
     seeds: Mapping[str, tuple[float, ...]] = field(default_factory=dict)  # source: every value of its sample
     convergence: Convergence | None = None
     remark: str = ""  # of the manifest, on what the levels show
+    doubt: str = ""  # why a run that the estimate of its error rests on may not be used, if so
 
     @property
     def scale(self) -> float:
@@ -100,7 +102,7 @@ class Outcome:
     @property
     def is_estimated(self) -> bool:
         """Whether there is an estimate of the numerical error at all, beyond that of averages over time."""
-        return not set(self.sources) <= {"time"}
+        return not self.doubt and not set(self.sources) <= {"time"}
 
     @property
     def objection(self) -> str:
@@ -135,7 +137,7 @@ class Outcome:
             return WITHIN_GOAL
         if abs(self.error) <= self.bound:
             return VALIDATED
-        return WITHIN_GOAL if self.observable.reference == 0 else FAILED
+        return WITHIN_GOAL if self.observable.reference == 0 <= self.measured.value else FAILED
 
     @property
     def band(self) -> tuple[float, float]:
@@ -143,8 +145,8 @@ class Outcome:
 
     @property
     def state(self) -> str:
-        """What the levels show; empty where there are fewer than three."""
-        return self.convergence.state if self.convergence and self.verdict != SKIPPED else ""
+        """What the levels show; empty where there are fewer than three, or one of them may not be used."""
+        return self.convergence.state if self.convergence and not self.doubt and self.verdict != SKIPPED else ""
 
     @property
     def converges_as_asked(self) -> bool:
@@ -201,7 +203,7 @@ class Outcome:
         if self.observable.goal == 0.0:
             return "met exactly"
         if not self.is_estimated:
-            return f"{goal}, no estimate of its own error"
+            return f"{goal}, no estimate of its own error" + (f": {self.doubt}" if self.doubt else "")
         bound = f"k u = {self.bound_text}"
         if self.verdict == FAILED:
             return f"within the {goal}, but not explained by its uncertainty, {bound}"
@@ -258,10 +260,15 @@ def judge(case: Case, tier: str, entries: Entries) -> list[Outcome]:
         def of(overrides: tuple[str, ...], observable: Observable = observable) -> Measured:
             return entries[overrides].found.values.get(observable.name, NOT_MEASURED)
 
+        def doubts(*sets: tuple[str, ...], of: Callable[[tuple[str, ...]], Measured] = of) -> str:
+            return "; ".join(f"{' '.join(one)}: {of(one).objection}" for one in sets if of(one).objection)
+
         finished = [entries[level.overrides] for level in case.levels_of(tier)]
         levels = [of(level.overrides) for level in case.levels_of(tier)]
         sources = {"time": levels[-1].uncertainty} if levels[-1].uncertainty else {}
         base, freedom, seeds = case.quick_finest().overrides, {}, {}
+        doubt = doubts(*dict.fromkeys([*(level.overrides for level in case.levels_of(tier)[:-1]), base,
+                                       *(base + chosen for vary in case.vary for chosen in vary.sets)]))
         for vary in case.vary:
             values = [of(base + chosen).value for chosen in vary.sets]
             sources[vary.source] = _varied(vary, of(base).value, values)
@@ -271,12 +278,13 @@ def judge(case: Case, tier: str, entries: Entries) -> list[Outcome]:
             if vary.from_lattice:
                 sources["lattice"] = abs(float(np.mean(values)) - of(base).value)
         outcome = Outcome(_explained_for("value", observable), levels[-1], sources, freedom, tuple(_height(case, one) for one in finished), tuple(levels), seeds,
-                          remark=case.remark)
+                          remark=case.remark, doubt=doubt)
         finest = _converge(case, outcome) if len(levels) > 1 else outcome
         outcomes.append(finest)
         if observable.extrapolated is not None and len(levels) > 2:
             outcomes.append(_at_zero(finest))
-        outcomes += [_of_starts(observable, finest, vary, seeds[vary.source]) for vary in case.vary if vary.from_lattice]
+        outcomes += [_of_starts(observable, finest, vary, seeds[vary.source], doubts(*(base + chosen for chosen in vary.sets)))
+                     for vary in case.vary if vary.from_lattice]
     return outcomes
 
 
@@ -285,13 +293,13 @@ def _explained_for(row: str, observable: Observable) -> Observable:
     return observable if observable.explains == row else replace(observable, explained="", explained_goal=0.0)
 
 
-def _of_starts(observable: Observable, finest: Outcome, vary: Vary, values: tuple[float, ...]) -> Outcome:
+def _of_starts(observable: Observable, finest: Outcome, vary: Vary, values: tuple[float, ...], objection: str) -> Outcome:
     """The mean over disordered starts as an outcome of its own, with the same goal; the other errors are those of the lattice."""
     observable = replace(_explained_for("starts", observable), symbol=f"{observable.symbol}, {vary.source}", order=None, extrapolated=None)
     mean, scatter = float(np.mean(values)), float(np.std(values, ddof=1)) / math.sqrt(len(values))
     others = {name: u for name, u in finest.sources.items() if name not in (vary.source, "lattice")}
-    return Outcome(observable, replace(finest.measured, value=mean), others | {"mean of starts": scatter},
-                   {"mean of starts": len(values) - 1}, seeds={vary.source: values})
+    return Outcome(observable, replace(finest.measured, value=mean, objection=objection), others | {"mean of starts": scatter},
+                   {"mean of starts": len(values) - 1}, seeds={vary.source: values}, doubt=finest.doubt)
 
 
 def _at_zero(finest: Outcome) -> Outcome:
@@ -302,7 +310,7 @@ def _at_zero(finest: Outcome) -> Outcome:
                          goal=finest.observable.extrapolated, order=None, extrapolated=None, explained="", explained_goal=0.0)
     sources = {name: value for name, value in finest.sources.items() if name != "resolution"}
     return Outcome(observable, Measured(found.value, 0.0, objection), sources | {f"extrapolation ({found.how})": found.uncertainty},
-                   finest.freedom)
+                   finest.freedom, doubt=finest.doubt)
 
 
 def beside(case: Case, entries: Entries) -> list[tuple[str, Outcome]]:

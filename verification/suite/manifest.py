@@ -45,6 +45,7 @@
     explained = "why it misses its goal"  # of a miss whose cause is known: it stays FAILED, is shown with the cause, and fails no test
     explained_goal = 0.05           # largest error, as goal, that this explains; comes with it
     explains = "value"              # or "starts": the mean of disordered starts, see from_lattice; "value" if left out
+    points = ["phi_0.1"]            # it is judged at these alone; at all if left out
     needs = ["force-on-body"]       # capabilities of a code beside those that the scene asks for; may be left out
     input = 0.0                     # standard uncertainty from the inputs, absolute; 0 if left out
     source = "Sangani and Acrivos 1982, table 1"
@@ -227,7 +228,7 @@ def _explanation(table: dict, where: str) -> dict:
 
 def _observable(table: dict, where: str) -> Observable:
     kinds = {"name": str, "symbol": str}
-    _only(table, (*kinds, *REFERENCES, *STANDARD, "earlier", "uncertainty", "source", "input", "needs", *EXPLAINED), where)
+    _only(table, (*kinds, *REFERENCES, *STANDARD, "earlier", "uncertainty", "source", "input", "needs", "points", *EXPLAINED), where)
     standard = _standard(table, where)
     if standard.order and not (BAND[0] <= standard.order[0] and standard.order[1] <= BAND[1]):
         raise CaseError(f"{where}.order = {table['order']!r}: beyond {list(BAND)}, what theory can give of a method of second order")
@@ -239,6 +240,7 @@ def _observable(table: dict, where: str) -> Observable:
         why=standard.why,
         earlier=_earlier(table, standard, where),
         needs=_needs(table, where),
+        points=_texts(table, "points", where, []),
         **_explanation(table, where),
         input=_entry(table, "input", NUMBER, where, 0.0),
         order=standard.order,
@@ -338,6 +340,11 @@ def _without_band(observable: Observable, unbanded: _Unbanded) -> Observable:
 def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
     """The case once for each point, or the case itself where there are none."""
     found = []
+    names = [table.get("name") for table in tables]
+    for i, observable in enumerate(case.observables):
+        for name in observable.points:
+            if name not in names:
+                raise CaseError(f"{where}.observable[{i}].points: {name!r}: no such point; known are {', '.join(map(str, names))}")
     for i, table in enumerate(tables):
         at = f"{where}.point[{i}]"
         _only(table, ("name", "set", "tier", "cost", "unbanded", *EXPLAINED), at)
@@ -354,7 +361,8 @@ def _points(case: Case, tables: list[dict], where: str) -> list[Case]:
             tier=_choice(table, "tier", TIERS, at, case.tier), cost=_cost(table, at, case.cost),
             levels=tuple(replace(level, overrides=base + level.overrides) for level in case.levels),
             remark=unbanded.why if unbanded else case.remark,
-            observables=tuple(_of_point(one, unbanded, table, at) for one in case.observables),
+            observables=tuple(_of_point(one, unbanded, table, at) for one in case.observables
+                              if not one.points or table["name"] in one.points),
         ))
     if len({point.name for point in found}) < len(found):
         raise CaseError(f"{where}.point: two points have the same name; rename one")

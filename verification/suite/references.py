@@ -80,7 +80,8 @@ def _from_table(observable: Observable, case: Case) -> Observable:
         found = look_up(observable.published, case.scene)
     except (KeyError, ValueError) as error:
         raise CaseError(f"{case.file}: case.observable.published = {observable.published!r}: {error}") from None
-    return replace(observable, reference=found.value, uncertainty=found.uncertainty, source=found.source)
+    return replace(observable, reference=found.value, uncertainty=found.uncertainty, source=found.source,
+                   input=observable.input or found.input)
 
 
 def resolved(case: Case, live: Reference | None) -> Case:

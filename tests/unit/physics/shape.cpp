@@ -257,8 +257,8 @@ TYPED_TEST(WallTest, an_end_takes_what_lies_beyond_it) {
   layer.thickness = 3.0;
   const std::array<double, 2> sides{4.0, 4.0}, spacing{fine, fine};
   const auto whole = make_wall_piece<2, TypeParam>(1, sides, spacing, layer);
-  const auto ended = make_wall_piece<2, TypeParam>(1, sides, spacing, layer, {0, true, false});
-  const auto mirrored = make_wall_piece<2, TypeParam>(1, sides, spacing, layer, {0, false, true});
+  const auto ended = make_wall_piece<2, TypeParam>(1, sides, spacing, layer, {.below = {true, false}});
+  const auto mirrored = make_wall_piece<2, TypeParam>(1, sides, spacing, layer, {.above = {true, false}});
   ASSERT_EQ(ended.frozen.size(), 128u * 128u);
   const auto at = [](const Shape<2>& shape, int column, int row) { return shape.frozen[128 * row + column]; };
   for (int row = 0; row < 128; row += 9)
@@ -280,6 +280,29 @@ TYPED_TEST(WallTest, an_end_takes_what_lies_beyond_it) {
   EXPECT_NEAR(at(ended, 0, 64).own_density, at(whole, 64, 0).own_density, 0.01 * 1024.0);
   const double face = at(whole, 0, 0).own_density / 1024.0;
   EXPECT_NEAR(at(ended, 0, 0).own_density / 1024.0, face * face, 0.02);  // exact for a product of profiles
+}
+
+TYPED_TEST(WallTest, ends_along_two_axes_take_what_lies_beyond_either) {
+  const double fine = 1.0 / 6.0;
+  FrozenLayer layer{fine, 216.0};
+  layer.thickness = 1.5;
+  const std::array<double, 3> sides{3.0, 3.0, 3.0}, spacing{fine, fine, fine};
+  const auto first = make_wall_piece<3, TypeParam>(1, sides, spacing, layer, {.below = {true, false, false}});
+  const auto second = make_wall_piece<3, TypeParam>(1, sides, spacing, layer, {.above = {false, false, true}});
+  const auto both = make_wall_piece<3, TypeParam>(1, sides, spacing, layer,
+                                                  {.below = {true, false, false}, .above = {false, false, true}});
+  ASSERT_EQ(both.frozen.size(), 18u * 18u * 18u);
+  const auto density = [](const Shape<3>& shape, int x, int y, int z) {
+    return shape.frozen[18 * (18 * z + y) + x].own_density;
+  };
+  for (int i = 0; i < 18; ++i) {
+    EXPECT_EQ(density(both, i, 0, 5), density(first, i, 0, 5));  // farther than the range from the end along z
+    EXPECT_NEAR(density(both, 9, 0, i), density(second, 9, 0, i), 0.005 * 216.0);      // but for the quadrature
+    EXPECT_NEAR(density(both, 12, 0, 17 - i), density(both, i, 0, 5), 0.005 * 216.0);  // likewise, alike
+  }
+  // Half a spacing from the face and from both ends: in product form, as each surface is to the two others.
+  const double face = density(both, 9, 0, 9) / 216.0;
+  EXPECT_NEAR(density(both, 0, 0, 17) / 216.0, face * face * face, 0.02);
 }
 
 TEST(MakeWallPiece, thin_wall_has_one_middle_sheet_and_sees_both_faces) {
