@@ -54,4 +54,8 @@ if(MAPPM_SANITIZE)
   target_compile_options(mappm_flags INTERFACE -fsanitize=${MAPPM_SANITIZE} -fno-sanitize-recover=all
     -fno-omit-frame-pointer)
   target_link_options(mappm_flags INTERFACE -fsanitize=${MAPPM_SANITIZE})
+  if(MAPPM_SANITIZE MATCHES "address")
+    # Reaching beyond an object is what the sanitizer of addresses sees, and this check is a quarter of the time to compile.
+    target_compile_options(mappm_flags INTERFACE -fno-sanitize=object-size)
+  endif()
 endif()
