@@ -126,7 +126,7 @@ def test_a_picture_is_embedded_small_and_whole(tmp_path: Path) -> None:
     svg = ('<?xml version="1.0"?>\n<svg xmlns="http://www.w3.org/2000/svg" width="72pt" height="36pt">\n <metadata>x</metadata>\n'
            ' <g id="axes_1"><path id="kept" d="M 1.23456 2.0 \nL 3.99999 -0.001 \n" style="font-family: A, B"/></g>\n</svg>\n')
     assert smaller(svg) == ('<svg xmlns="http://www.w3.org/2000/svg" width="72pt" height="36pt"><path id="kept" '
-                            'd="M1.23 2.0L4 0 " style="font-family: DejaVu Sans,sans-serif"/></svg> ')
+                            'd="M1.2 2.0L4 0 " style="font-family: DejaVu Sans,sans-serif"/></svg> ')
     twice = '<svg a="1"><path style="fill: red; x: 1"/><g clip-path="url(#c)"><path style="fill: red; x: 1"/></g></svg>'
     assert smaller(twice) == ('<svg a="1"><style>.s0{fill:red;x:1}</style><path class="s0"/>'
                               '<g clip-path="url(#c)"><path class="s0"/></g></svg>')

@@ -11,14 +11,14 @@ from urllib.parse import quote
 from markupsafe import Markup
 from PIL import Image
 
-QUALITY = 80  # of WebP
-WIDEST, WIDE = 900, 1200  # pixels of a field; of one that takes the whole width of the page
+QUALITY = 50  # of WebP
+WIDEST, WIDE = 640, 900  # pixels of a field; of one that takes the whole width of the page
 SAFE = " <>=:;/',()-._~!*+@?$|[]{}"  # in an address within double quotes
 UNUSED = r' id="(?:figure|axes|patch|line2d|text|matplotlib|xtick|ytick|legend)[\w.]*"'  # ids that nothing refers to
 
 
 def _shorter(number: re.Match) -> str:
-    return f"{round(float(number[0]), 2) + 0.0:g}"
+    return f"{round(float(number[0]), 1) + 0.0:g}"
 
 
 def _without_bare_groups(svg: str) -> str:
@@ -39,13 +39,13 @@ def _with_classes(svg: str) -> str:
 
 
 def smaller(svg: str) -> str:
-    """An SVG of matplotlib without what no browser draws: metadata, comments, fonts beyond two, hundredths of a point."""
+    """An SVG of matplotlib without what no browser draws: metadata, comments, fonts beyond two, less than a tenth of a point."""
     svg = svg[svg.index("<svg") :]
     for nothing in (r"<metadata>.*?</metadata>", r"<!--.*?-->", UNUSED):
         svg = re.sub(nothing, "", svg, flags=re.DOTALL)
     svg = re.sub(r"font-family: [^;\"]*", "font-family: DejaVu Sans,sans-serif", svg)
     svg = re.sub(r' transform="rotate\(-0 [^"]*\)"', "", svg)
-    svg = re.sub(r'(?<= d=")[^"]*|(?<= [xy]=")[^"]*', lambda found: re.sub(r"-?\d+\.\d{3,}", _shorter, found[0]), svg)
+    svg = re.sub(r'(?<= d=")[^"]*|(?<= [xy]=")[^"]*', lambda found: re.sub(r"-?\d+\.\d{2,}", _shorter, found[0]), svg)
     svg = re.sub(r"\s+", " ", svg)
     svg = re.sub(r" ?([MLQCHVZz]) (?=[-\d\"])", r"\1", svg).replace("> <", "><")
     return _with_classes(_without_bare_groups(svg))
