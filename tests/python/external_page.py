@@ -60,7 +60,7 @@ def test_nothing_is_cut_off_or_hard_to_read(tab: Browser, page: Path, width: int
 
 
 def test_the_page_is_small_and_no_longer_than_it_may_be(tab: Browser, page: Path) -> None:
-    """4 MB and 30 000 pixels, as verification/report/README.md has them; that one case is unfolded is part of it."""
+    """4 MB and 30 000 pixels, as verification/report/README.md has them."""
     tab.open(page, 1280)
     assert page.stat().st_size < 4e6 and tab.value("document.documentElement.scrollHeight") < 30_000
 
