@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -16,6 +15,7 @@ namespace {
 using Shape = BodyScene::Shape;
 
 constexpr std::size_t most_solids = 10'000'000;  // of one [[body]]
+constexpr double extent_rounding = 1e-6;  // spacings, of an end of a wall that is to lie at the border of the box
 
 Shape read_shape(const Fields& table) {
   const bool plane = table.source().dimension == 2;
@@ -121,8 +121,7 @@ void read_velocities(const Fields& table, std::size_t count, BodyScene& body) {
     table.fail("rotates", "a fixed body cannot rotate; remove it or change the motion");
 }
 
-/// None for an extent that fills the box.
-std::optional<BodyScene::Extent> read_extent(const Fields& table, const Scene& scene, int normal) {
+BodyScene::Extent read_extent(const Fields& table, const Scene& scene, int normal) {
   BodyScene::Extent extent;
   extent.key = table.path("");
   extent.key.pop_back();
@@ -133,25 +132,25 @@ std::optional<BodyScene::Extent> read_extent(const Fields& table, const Scene& s
   if (extent.axis == normal) table.fail("axis", "is the wall's normal; write an axis along the wall");
   if (extent.from >= extent.to) table.fail("from", fmt::format("must be less than to = {}", extent.to));
   const double side = scene.box[static_cast<std::size_t>(extent.axis)];
-  const double rounding = 1e-6 * scene.fluid.spacing;
-  if (extent.to > side + rounding)
+  if (extent.to > side + extent_rounding * scene.fluid.spacing)
     table.fail("to", fmt::format("lies outside the box [0, {}]; a wall cannot go on across its border", side));
-  if (extent.from <= rounding && extent.to >= side - rounding) return {};
   return extent;
 }
 
-/// One table, or a list of them.
+/// One table, or a list of them. An extent that fills the box is none.
 std::vector<BodyScene::Extent> read_extents(const Fields& wall, const Scene& scene, int normal) {
-  std::vector<BodyScene::Extent> extents;
-  std::array<bool, 3> limited{};
+  std::array<std::optional<BodyScene::Extent>, 3> along;
   for (const Fields& table : wall.table_or_tables("extent")) {
-    const std::optional<BodyScene::Extent> extent = read_extent(table, scene, normal);
-    const auto axis = static_cast<std::size_t>(table.axis("axis"));
-    if (limited[axis]) table.fail("axis", "limits the wall along one axis twice; keep one of the two tables");
-    limited[axis] = true;
-    if (extent) extents.push_back(*extent);
+    const BodyScene::Extent extent = read_extent(table, scene, normal);
+    std::optional<BodyScene::Extent>& known = along[static_cast<std::size_t>(extent.axis)];
+    if (known) table.fail("axis", "limits the wall along one axis twice; keep one of the two tables");
+    known = extent;
   }
-  std::sort(extents.begin(), extents.end(), [](const auto& a, const auto& b) { return a.axis < b.axis; });
+  const double rounding = extent_rounding * scene.fluid.spacing;
+  std::vector<BodyScene::Extent> extents;
+  for (std::size_t axis = 0; axis < along.size(); ++axis)
+    if (along[axis] && (along[axis]->from > rounding || along[axis]->to < scene.box[axis] - rounding))
+      extents.push_back(*along[axis]);
   return extents;
 }
 

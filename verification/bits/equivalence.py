@@ -24,7 +24,7 @@ import math
 import re
 import shutil
 from collections.abc import Callable
-from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -217,21 +217,21 @@ def run_matrix(scene: Path, equivalence: Equivalence, out: Path, say: Callable[[
     skipped = [obstacle(variant) for variant in equivalence.variants]
     if skipped[0]:
         raise SolverError(f"{equivalence.variants[0].label}: {skipped[0]}")  # nothing to compare with
-    with ThreadPoolExecutor(cores()) as narrow, ThreadPoolExecutor(1) as wide:
-        def begun(index: int, pool: Executor) -> Future[Table]:
-            variant = equivalence.variants[index]
-            return pool.submit(_series, scene, variant, equivalence.steps, equivalence.every, out / str(index))
 
-        possible = [index for index, why in enumerate(skipped) if not why]
-        series = {index: begun(index, narrow) for index in possible if equivalence.variants[index].alone}
-        wait(series.values())
-        series |= {index: begun(index, wide) for index in possible if index not in series}
-        rows = []
-        try:
-            for index, (variant, why) in enumerate(zip(equivalence.variants, skipped)):
-                rows.append(Row(variant.label, skipped=why) if why else _row(variant, series[index].result(), series[0].result()))
-                say(rows[-1].line)
-        except BaseException:
-            wide.shutdown(cancel_futures=True)
-            raise
+    def series_of(index: int) -> Table:
+        return _series(scene, equivalence.variants[index], equivalence.steps, equivalence.every, out / str(index))
+
+    with ThreadPoolExecutor(cores()) as pool:  # which ends when all of them have
+        alone = {index: pool.submit(series_of, index) for index, variant in enumerate(equivalence.variants)
+                 if variant.alone and not skipped[index]}
+    rows: list[Row] = []
+    reference: Table | None = None
+    for index, (variant, why) in enumerate(zip(equivalence.variants, skipped, strict=True)):
+        if why:
+            rows.append(Row(variant.label, skipped=why))
+        else:
+            series = alone[index].result() if index in alone else series_of(index)
+            reference = series if reference is None else reference
+            rows.append(_row(variant, series, reference))
+        say(rows[-1].line)
     return Matrix(tuple(rows))
