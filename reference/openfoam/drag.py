@@ -1,6 +1,7 @@
 """The problem `drag`: one fixed body in a square or cubic cell, steady or over time."""
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from reference.openfoam.cell import Cell
 from reference.openfoam.errors import InputError
 from reference.openfoam.fields import FIELD, write_field
 from reference.openfoam.ladder import Problem
-from reference.openfoam.level import LevelRun, run_level
+from reference.openfoam.level import LevelRun, energy_of, run_level
 from reference.openfoam.run import HOW_TO_GET
 from reference.openfoam.transient import run_transient
 from verification.protocol.quantity import Quantity, Result
@@ -48,7 +49,9 @@ def drag_problem(cell: Cell, end: float | None = None) -> Problem:
         raise InputError(f"--end {end}: must be above 0")
 
     def run(folder: Path, n: int) -> LevelRun:
-        return run_level(folder, cell, n) if end is None else run_transient(folder, cell, n, end)
+        if end is not None:
+            return run_transient(folder, cell, n, end)
+        return replace(run_level(folder, cell, n), energy=energy_of(folder))
 
     program = "simpleFoam" if end is None else "pimpleFoam"
     multiple = MULTIPLE[cell.dimension]

@@ -2,7 +2,7 @@
 
 import math
 import shutil
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +26,7 @@ class LevelRun:
     checksum: str
     version: str
     folder: Path
+    _: KW_ONLY
     objection: str = ""
     uncertainty: float = 0.0  # of a mean over time
     period: float | None = None  # sides over superficial velocity
@@ -82,7 +83,7 @@ def measure(folder: Path, cell: Cell, n: int, checksum: str, seconds: float) -> 
     drag = float(read.gradients(folder, "simpleFoam")[-1] * drag_scale(cell, fluid_volume))
     say(f"N {n}: drag {drag:.7g}, {seconds:.1f} core-seconds")
     version = read.version(folder, "simpleFoam")
-    return LevelRun(n, drag, seconds, checksum, version, folder, steady_objection(folder, cell, fluid_volume), energy=energy_of(folder))
+    return LevelRun(n, drag, seconds, checksum, version, folder, objection=steady_objection(folder, cell, fluid_volume))
 
 
 def run_level(folder: Path, cell: Cell, n: int) -> LevelRun:

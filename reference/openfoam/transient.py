@@ -80,6 +80,5 @@ def run_transient(folder: Path, cell: Cell, n: int, end: float) -> LevelRun:
     say(f"N {n}: mean drag {history.drag:.7g} +- {history.drag_uncertainty:.2g}, {period}, "
         f"swing {history.swing:.2g}, {seconds:.1f} core-seconds")
     version = read.version(folder, solver.program)
-    return LevelRun(
-        n, history.drag, seconds, checksum, version, folder, objection, history.drag_uncertainty, history.period, table
-    )
+    return LevelRun(n, history.drag, seconds, checksum, version, folder, objection=objection,
+                    uncertainty=history.drag_uncertainty, period=history.period, history=table)
