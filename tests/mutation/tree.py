@@ -75,7 +75,7 @@ def write_tree(mutants: list[Mutant], test_files: set[str]) -> None:
 def build_tree(targets: list[str], jobs: int) -> None:
     """Throws BuildError."""
     configure = ["cmake", "-G", "Ninja", "-S", TREE, "-B", BUILD, "-D", "CMAKE_BUILD_TYPE=Release", "-D",
-                 "CMAKE_CXX_COMPILER=g++", "-D", "CMAKE_CXX_FLAGS_RELEASE=-O2 -march=native -w"]
+                 "CMAKE_CXX_COMPILER=g++", "-D", "CMAKE_CXX_FLAGS_RELEASE=-O1 -march=native -w"]
     build = ["cmake", "--build", BUILD, "--parallel", str(jobs), "--target", *targets]
     for command in (configure, build):
         finished = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
