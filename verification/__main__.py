@@ -171,20 +171,29 @@ def report(arguments: argparse.Namespace) -> int:
 
 
 def study(arguments: argparse.Namespace) -> int:
-    """Lists the studies, or runs what is missing of one and prints its table."""
+    """Lists the studies, or runs what is missing of one, prints its table and draws its chart."""
+    from verification.studies.precision import floor_of, lines_of_fronts, points_of
     from verification.studies.study import all_studies, find_study, lines_of, read_study, results_of, run_study
 
     if arguments.name is None:
         for found in map(read_study, all_studies()):
-            runs, purpose = len(found.settings) * len(found.codes), textwrap.shorten(found.purpose, 90, placeholder=" ...")
+            runs, purpose = len(found.runs), textwrap.shorten(found.purpose, 90, placeholder=" ...")
             print(f"{found.name:28} {runs:4} runs  {purpose}")
         return 0
     from verification.store.laboratory import Laboratory
 
     found, laboratory = find_study(arguments.name), Laboratory(arguments.lab)
     if not arguments.only_show:
-        run_study(laboratory, found, arguments.jobs, _say)
-    print("\n".join(lines_of(found, results_of(laboratory, found))))
+        run_study(laboratory, found, arguments.jobs, _say, arguments.repeats)
+    results = results_of(laboratory, found)
+    print("\n".join(lines_of(found, results)))
+    if found.chart and results:
+        from verification.report.precision_chart import draw_precision
+
+        print("\n".join(lines_of_fronts(found, points_of(laboratory.store, results), floor_of(results))))
+        file = arguments.out / f"{found.name}.svg"
+        draw_precision(laboratory.store, found, results, file)
+        print(f"study: {file} and {file.with_suffix('.csv').name}")
     return 0
 
 
@@ -193,6 +202,12 @@ def _ranks(text: str) -> list[int]:
     if min(ranks) < 1 or len(set(ranks)) != len(ranks):
         raise ValueError(text)
     return ranks
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise ValueError(text)
+    return int(text)
 
 
 def _add_lab(parser: argparse.ArgumentParser) -> None:
@@ -259,6 +274,9 @@ def _parser() -> argparse.ArgumentParser:
     many.add_argument("name", nargs="?", help="CASE.NAME")
     many.add_argument("--jobs", type=int, default=cores(), metavar="K", help="runs at a time (default: a core each)")
     many.add_argument("--only-show", action="store_true", help="run nothing")
+    many.add_argument("--repeats", type=_count, default=1, metavar="K", help="measure the cost of each run K times (default 1)")
+    many.add_argument("--out", type=Path, default=ROOT / "reports" / "out" / "charts", metavar="DIR",
+                      help="folder of the chart (default reports/out/charts)")
     _add_lab(many)
 
     bits = commands.add_parser("compare-bits", help="compare digests of the serial reference and the parallel solver")

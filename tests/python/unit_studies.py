@@ -9,19 +9,27 @@ import pytest
 
 from verification.protocol.errors import CaseError
 from verification.store.laboratory import Laboratory
-from verification.studies.study import all_studies, find_study, jobs_of, lines_of, read_study, results_of, run_study
+from verification.studies.study import all_studies, find_study, lines_of, read_study, results_of, run_study, trials_of
 
 CASE = Path(__file__).resolve().parents[2] / "cases" / "shear_wave" / "case.toml"
 FACTORIAL = """
 [study]
 purpose = "to see"
+
+[[study.block]]
 codes = ["exact"]
 
-[study.factors]
+[study.block.factors]
 N = [8, 16]
 rcut_over_dx = [3, 3.5, 4]
 """
-ONE_AT_A_TIME = FACTORIAL.replace('purpose = "to see"', 'purpose = "to see"\ndesign = "one at a time"')
+ONE_AT_A_TIME = FACTORIAL.replace("codes = ", 'design = "one at a time"\ncodes = ')
+TWO_BLOCKS = FACTORIAL + """
+[[study.block]]
+name = "finer"
+codes = ["exact", "mappm"]
+factors = { N = [16, 32], rcut_over_dx = [3] }
+"""
 
 
 @pytest.fixture
@@ -39,9 +47,16 @@ def test_factorial_and_one_at_a_time(study_file: Path) -> None:
     study_file.write_text(FACTORIAL)
     study = read_study(study_file)
     assert study.name == "shear_wave.some"
-    assert len(study.settings) == 6 and ("N=8", "rcut_over_dx=3.5") in study.settings
+    assert len(study.runs) == 6 and ("exact", ("N=8", "rcut_over_dx=3.5")) in study.runs
     study_file.write_text(ONE_AT_A_TIME)
-    assert read_study(study_file).settings == [(), ("N=8",), ("N=16",), ("rcut_over_dx=3",), ("rcut_over_dx=3.5",), ("rcut_over_dx=4",)]
+    assert [setting for _, setting in read_study(study_file).runs] == [(), ("N=8",), ("N=16",), ("rcut_over_dx=3",), ("rcut_over_dx=3.5",), ("rcut_over_dx=4",)]
+
+
+def test_a_run_that_two_blocks_ask_for_is_made_once(study_file: Path) -> None:
+    study_file.write_text(TWO_BLOCKS)
+    runs = read_study(study_file).runs
+    assert len(runs) == 6 + 3
+    assert runs["exact", ("N=16", "rcut_over_dx=3")] == "" and runs["mappm", ("N=16", "rcut_over_dx=3")] == "finer"
 
 
 def test_only_missing_runs_are_made(study_file: Path, tmp_path: Path) -> None:
@@ -64,7 +79,7 @@ def test_a_code_that_is_not_there_is_skipped(study_file: Path, monkeypatch: pyte
     monkeypatch.setattr("verification.studies.study.find_code", lambda name: _missing(name))
     said: list[str] = []
     study_file.write_text(FACTORIAL.replace("exact", "lammps"))
-    assert jobs_of(read_study(study_file), said.append) == []
+    assert trials_of(read_study(study_file), said.append) == []
     assert "SKIPPED: install it" in said[0]
 
 
@@ -79,10 +94,15 @@ def _missing(name: str):
     (FACTORIAL.replace("N = [8, 16]", "N = []"), "factors.N"),
     (FACTORIAL.replace("N = [8, 16]", "N = [8, 8]"), "stands twice"),
     (FACTORIAL.replace("N = [8, 16]", "M = [8]"), "M"),
-    (FACTORIAL.replace("codes = ", "design = 'random'\ncodes = "), "study.design"),
-    (FACTORIAL.replace("codes = ", "goal = 1\ncodes = "), "study.goal"),
-    (FACTORIAL.replace('["exact"]', '"exact"'), "study.codes"),
-    (FACTORIAL.partition("[study.factors]")[0], "study.factors"),
+    (FACTORIAL.replace("codes = ", "design = 'random'\ncodes = "), "study.block.design"),
+    (FACTORIAL.replace("codes = ", "goal = 1\ncodes = "), "study.block.goal"),
+    (FACTORIAL.replace("codes = ", "name = 1\ncodes = "), "study.block.name"),
+    (FACTORIAL.replace('["exact"]', '"exact"'), "study.block.codes"),
+    (FACTORIAL.partition("[study.block.factors]")[0], "study.block.factors"),
+    (FACTORIAL.partition("[[study.block]]")[0], "study.block"),
+    (FACTORIAL.replace("purpose", 'chart = "map"\npurpose'), "study.chart"),
+    (FACTORIAL.replace("purpose", 'observable = "drag"\npurpose'), "study.observable"),
+    (FACTORIAL.replace("purpose", "goal = 1\npurpose"), "study.goal"),
     ("[other]\n", "[study]"),
     ("[study\n", "TOML"),
 ])
@@ -95,7 +115,7 @@ def test_wrong_files_are_refused_by_key(study_file: Path, wrong: str, named: str
 
 def test_all_studies_of_the_tree_can_be_read() -> None:
     found = [read_study(file) for file in all_studies()]
-    assert found and all(study.settings and study.purpose for study in found)
+    assert found and all(study.runs and study.purpose for study in found)
 
 
 def test_an_unknown_study_is_refused() -> None:

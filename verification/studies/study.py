@@ -8,60 +8,132 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from verification.codes.code import Code, find_code
-from verification.protocol.errors import Beyond, CaseError, refuse
+from verification.protocol.errors import Beyond, CaseError, SolverError, refuse
 from verification.protocol.toml_text import value_text
 from verification.store.laboratory import Laboratory
 from verification.suite.ability import stated_alone
-from verification.suite.case import Case
+from verification.suite.case import Case, Observable
 from verification.suite.judge import Outcome
 from verification.suite.manifest import cases_folder, find_cases
 from verification.suite.parameters import scene_of
 from verification.suite.progress import time_left
-from verification.suite.references import resolved
+from verification.suite.references import Reference, look_up_reference, obtain_reference, resolved
+from verification.suite.refusals import remember, why_not
 from verification.suite.runner import Entry, Job, Shelf, look_up, perform
 
 DESIGNS = ("factorial", "one at a time")
-KEYS = ("purpose", "design", "codes", "point", "factors")
+CHARTS = ("precision",)
+KEYS = ("purpose", "point", "observable", "chart", "block")
+BLOCK_KEYS = ("name", "codes", "design", "factors")
 
 Setting = tuple[str, ...]  # KEY=VALUE of each factor
 
 
 @dataclass(frozen=True)
-class Study:
-    name: str  # CASE.NAME
-    case: Case
-    purpose: str
-    design: str
+class Block:
+    """Runs that belong together: every code with every setting."""
+
+    name: str
     codes: tuple[str, ...]
+    design: str
     factors: dict[str, tuple[str, ...]]  # KEY=VALUE, by KEY
 
     @property
     def settings(self) -> list[Setting]:
-        """One a run; of "one at a time" the case as it stands comes first, with nothing set."""
+        """Of "one at a time" the case as it stands comes first, with nothing set."""
         if self.design == "factorial":
             return list(itertools.product(*self.factors.values()))
         return [(), *((text,) for values in self.factors.values() for text in values)]
 
 
 @dataclass(frozen=True)
-class Result:
-    """One run of a study, and how far its first observable is from the reference."""
+class Study:
+    name: str  # CASE.NAME
+    file: Path
+    case: Case
+    purpose: str
+    observable: Observable  # the one that is judged
+    chart: str  # of CHARTS, or empty
+    blocks: tuple[Block, ...]
 
+    @property
+    def runs(self) -> dict[tuple[str, Setting], str]:
+        """(code, setting): the first block that asks for it."""
+        found: dict[tuple[str, Setting], str] = {}
+        for block in self.blocks:
+            for pair in itertools.product(block.codes, block.settings):
+                found.setdefault(pair, block.name)
+        return found
+
+    @property
+    def codes(self) -> list[str]:
+        return list(dict.fromkeys(code for block in self.blocks for code in block.codes))
+
+    @property
+    def tier(self) -> str:
+        """At which the reference code runs, where there is one."""
+        return self.case.tier
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A run that a study asks for."""
+
+    block: str
+    setting: Setting
+    job: Job
+
+
+@dataclass(frozen=True)
+class Result:
+    """A run of a study as it came out: how far its observable is from the reference, or why there is no value."""
+
+    block: str
     setting: Setting
     code: Code
-    entry: Entry
-    outcome: Outcome
+    job: Job
+    entry: Entry | None = None
+    outcome: Outcome | None = None
+    why: str = ""
 
 
 def _factors(where: str, table: dict) -> dict[str, tuple[str, ...]]:
     if not isinstance(table, dict) or not table:
-        refuse(where, "factors", table, "write a table [study.factors] of lists")
+        refuse(where, "factors", table, "write a table of lists")
     for key, values in table.items():
         if not isinstance(values, list) or not values:
             refuse(where, f"factors.{key}", values, "write a list of values")
         if len({value_text(value) for value in values}) < len(values):
             refuse(where, f"factors.{key}", values, "a value stands twice; remove one")
     return {key: tuple(f"{key}={value_text(value)}" for value in values) for key, values in table.items()}
+
+
+def _block(where: str, table: dict) -> Block:
+    for key in table:
+        if key not in BLOCK_KEYS:
+            refuse(where, key, table[key], f"unknown; known are {', '.join(BLOCK_KEYS)}")
+    name, design, codes = table.get("name", ""), table.get("design", DESIGNS[0]), table.get("codes", ["mappm"])
+    if not isinstance(name, str):
+        refuse(where, "name", name, "write a text")
+    if design not in DESIGNS:
+        refuse(where, "design", design, f"unknown; known are {', '.join(DESIGNS)}")
+    if not isinstance(codes, list) or not codes or not all(isinstance(code, str) for code in codes):
+        refuse(where, "codes", codes, "write a list of names of codes")
+    return Block(name, tuple(codes), design, _factors(where, table.get("factors")))
+
+
+def _observable(where: str, case: Case, table: dict) -> Observable:
+    """Without a name the first that stands without another code."""
+    if "observable" in table:
+        found = [one for one in case.observables if one.name == table["observable"]]
+        if not found:
+            names = ", ".join(dict.fromkeys(one.name for one in case.observables))
+            refuse(where, "observable", table["observable"], f"unknown; the case has {names}")
+        return found[0]
+    found = [one for one in case.observables if not one.live]
+    if not found:
+        refuse(where, "observable", None, "the case measures nothing that stands without another code; name the observable to judge")
+    return found[0]
 
 
 def read_study(file: Path) -> Study:
@@ -76,20 +148,19 @@ def read_study(file: Path) -> Study:
     for key in table:
         if key not in KEYS:
             refuse(where, key, table[key], f"unknown; known are {', '.join(KEYS)}")
-    family, design, codes = file.parent.name, table.get("design", DESIGNS[0]), table.get("codes", ["mappm"])
-    if design not in DESIGNS:
-        refuse(where, "design", design, f"unknown; known are {', '.join(DESIGNS)}")
-    if not isinstance(codes, list) or not codes or not all(isinstance(code, str) for code in codes):
-        refuse(where, "codes", codes, "write a list of names of codes")
+    family, blocks = file.parent.name, table.get("block")
     points = find_cases(f"{family}.{table['point']}" if "point" in table else family)
     if len(points) > 1:
         refuse(where, "point", None, f"choose one of {', '.join(case.name.partition('.')[2] for case in points)}")
+    if not isinstance(blocks, list) or not blocks or not all(isinstance(block, dict) for block in blocks):
+        refuse(where, "block", blocks, "write tables [[study.block]]")
+    if table.get("chart", "") not in ("", *CHARTS):
+        refuse(where, "chart", table["chart"], f"unknown; known are {', '.join(CHARTS)}")
     name = f"{family}.{file.stem.removeprefix('study_')}"
-    study = Study(name, points[0], " ".join(str(table.get("purpose", "")).split()), design, tuple(codes),
-                  _factors(where, table.get("factors")))
-    if all(observable.live for observable in study.case.observables):
-        refuse(where, "factors", table["factors"], f"{family} measures nothing that stands without another code; give it an observable")
-    for setting in study.settings:
+    study = Study(name, file, points[0], " ".join(str(table.get("purpose", "")).split()), _observable(where, points[0], table),
+                  table.get("chart", ""),
+                  tuple(_block(f"{where}.block", block) for block in blocks))
+    for _, setting in study.runs:
         scene_of(study.case, study.case.base + setting)
     return study
 
@@ -106,52 +177,74 @@ def find_study(name: str) -> Study:
     return read_study(known[name])
 
 
-def jobs_of(study: Study, say: Callable[[str], None] = print) -> list[Job]:
+def trials_of(study: Study, say: Callable[[str], None] = print) -> list[Trial]:
     """Of all codes that are installed and can do the case; the others are told to `say`."""
-    jobs = []
+    able: dict[str, tuple[Code, Case]] = {}
     for code in map(find_code, study.codes):
         try:
             if code.missing:
                 raise Beyond(code.missing)
-            case = stated_alone(study.case, code)
-            jobs += [Job(case, study.case.base + setting, code) for setting in study.settings]
+            able[code.name] = code, stated_alone(study.case, code, study.observable)
         except Beyond as error:
             say(f"{study.name}: {code.name} SKIPPED: {error}")
-    return jobs
+    return [Trial(block, setting, Job(case, study.case.base + setting, code))
+            for (name, setting), block in study.runs.items() if name in able for code, case in [able[name]]]
 
 
-def run_study(laboratory: Laboratory, study: Study, workers: int, say: Callable[[str], None]) -> None:
-    """What is missing, the cheapest first, so that there is something to see early. Throws what a run throws; what was made stays."""
-    jobs, left = jobs_of(study, say), time_left()
+def run_study(laboratory: Laboratory, study: Study, workers: int, say: Callable[[str], None], repeats: int = 1) -> None:
+    """What is missing, the cheapest first, so that there is something to see early, and then each run again until its cost was
+    measured `repeats` times. What a code refuses, and what fails, is told and remembered; what was made stays."""
+    jobs, left = [trial.job for trial in trials_of(study, say) if not why_not(laboratory, trial.job)], time_left()
 
     def told(job: Job, share: float) -> None:
         say(f"{study.name}: {job.code.name}, {job.label}: done; {left(share):.0f} s to go")
 
-    def skipped(job: Job, why: Beyond) -> None:
-        say(f"{study.name}: {job.code.name}, {job.label}: SKIPPED: {why}")
+    def failed(job: Job, error: Beyond | SolverError | CaseError) -> None:
+        verdict = "SKIPPED" if isinstance(error, Beyond) else "FAILED"
+        say(f"{study.name}: {job.code.name}, {job.label}: {verdict}: {remember(laboratory, job, error)}")
 
-    perform(laboratory, jobs, workers, told, cheapest_first=True, skipped=skipped)
+    if study.observable.live:
+        obtain_reference(laboratory, study.case, study.tier, {})
+    perform(laboratory, jobs, workers, told, cheapest_first=True, failed=failed)
+    for count in range(2, repeats + 1):
+        again = [job for job in jobs if 0 < len(laboratory.store.costs(job.request.key)) < count]
+        perform(laboratory, again, workers, told, anew=True, cheapest_first=True, failed=failed)
+
+
+def reference_of(shelf: Shelf, study: Study) -> Reference | None:
+    """Of the code that the observable is held against; None where there is no such code, or it was not run."""
+    if not study.observable.live:
+        return None
+    return look_up_reference(shelf, study.case, study.tier, {}, find_code(study.case.live.code))
 
 
 def results_of(shelf: Shelf, study: Study) -> list[Result]:
-    """Of the runs that are there."""
-    found = []
-    for job in jobs_of(study, lambda text: None):
-        entry = look_up(shelf, job)
+    """Of the runs that are there, and of those that failed or were refused."""
+    found, reference = [], reference_of(shelf, study)
+    if study.observable.live and reference is None:
+        return []
+    for trial in trials_of(study, lambda text: None):
+        job = trial.job
+        entry, why = look_up(shelf, job), why_not(shelf, job)
         if entry is not None:
-            (observable,) = resolved(replace(job.case, scene=entry.scene), None).observables
+            (observable,) = resolved(replace(job.case, scene=entry.scene), reference).observables
             outcome = Outcome(observable, entry.found.values[observable.name])
-            found.append(Result(job.overrides[len(study.case.base) :], job.code, entry, outcome))
+            found.append(Result(trial.block, trial.setting, job.code, job, entry, outcome))
+        elif why:
+            found.append(Result(trial.block, trial.setting, job.code, job, why=why))
     return found
 
 
 def lines_of(study: Study, results: list[Result]) -> list[str]:
     """A table: what was set, error and core-seconds."""
-    symbol = results[0].outcome.observable.symbol if results else ""
-    lines = [f"{study.name}: {len(results)} of {len(study.settings) * len(study.codes)} runs; {symbol}, error and core-seconds"]
+    made = sum(result.entry is not None for result in results)
+    lines = [f"{study.name}: {made} of {len(study.runs)} runs; {study.observable.symbol}, error and core-seconds"]
     width = max((len(" ".join(result.setting)) for result in results), default=0)
     for result in results:
+        head = f"{result.code.name:12} {' '.join(result.setting) or 'as declared':{width}}"
+        if result.entry is None:
+            lines.append(f"{head}  {result.why}")
+            continue
         error = "no value" if math.isnan(result.outcome.error) else result.outcome.error_text
-        lines.append(f"{result.code.name:12} {' '.join(result.setting) or 'as declared':{width}}  {error:>10}  "
-                     f"{result.entry.stored.cost.core_seconds:8.3g} s")
+        lines.append(f"{head}  {error:>10}  {result.entry.stored.cost.core_seconds:8.3g} s")
     return lines

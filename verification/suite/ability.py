@@ -26,11 +26,15 @@ def able(case: Case, code: Code) -> Case:
     return replace(case, observables=observables, equivalence=case.equivalence if DIGEST in code.capabilities else None, **own)
 
 
-def stated_alone(case: Case, code: Code) -> Case:
-    """What any code can be asked of the case: its first observable that is held against no other code, on one level and judged by its
-    goal alone, with none of the knobs of one code. Throws Beyond where this code cannot tell it."""
-    asked = able(case, code)
-    observable = next(one for one in asked.observables if not one.live)
+def stated_alone(case: Case, code: Code, asked: Observable | None = None) -> Case:
+    """What any code can be asked of the case: one observable, on one level and judged by its goal alone, with none of the knobs of one
+    code: the one that is asked for, or the first that is held against no other code. Throws Beyond where this code cannot tell it."""
+    found = able(case, code)
+    observable = next(one for given, one in zip(case.observables, found.observables, strict=True)
+                      if (given == asked if asked else not given.live))
     if observable.skipped:
         raise Beyond(observable.skipped)
-    return replace(asked, observables=(replace(observable, order=None, extrapolated=None),), levels=(), live=None, vary=(), beside=())
+    live = case.live if observable.live else None
+    if live and live.code == code.name:
+        raise Beyond("it is the reference")
+    return replace(found, observables=(replace(observable, order=None, extrapolated=None),), levels=(), live=live, vary=(), beside=())

@@ -179,14 +179,15 @@ def workers_of(count: int) -> Iterator[ThreadPoolExecutor]:
 
 
 Told = Callable[[Job, float], None]
+Failed = Callable[[Job, Beyond | SolverError | CaseError], None]
 
 
 def perform(laboratory: Laboratory, jobs: list[Job], workers: int, told: Told = lambda job, share: None, anew: bool = False,
-            cheapest_first: bool = False, skipped: Callable[[Job, Beyond], None] | None = None) -> None:
+            cheapest_first: bool = False, failed: Failed | None = None) -> None:
     """Makes all that is missing, the longest first, or the cheapest, `workers` at a time.
 
-    `told` is called after each with the share of the expected work that is behind. A run that fails does not stop the others: its
-    error is thrown when all have ended. `skipped` is told of what is beyond a code, which then is no error.
+    `told` is called after each with the share of the expected work that is behind. A run that fails does not stop the others: it is
+    told to `failed`, or its error is thrown when all have ended.
     """
     waiting = jobs if anew else [job for job in jobs if look_up(laboratory, job) is None]
     weights = {id(job): job.weight for job in waiting}
@@ -197,13 +198,11 @@ def perform(laboratory: Laboratory, jobs: list[Job], workers: int, told: Told = 
         nonlocal behind
         try:
             obtain(laboratory, job, anew)
-        except Beyond as error:
-            if skipped is None:
+        except (Beyond, SolverError, CaseError) as error:
+            if failed is None:
                 failures.append(error)
             else:
-                skipped(job, error)
-        except (SolverError, CaseError) as error:
-            failures.append(error)
+                failed(job, error)
         with lock:
             behind += weights[id(job)]
             told(job, behind / total)

@@ -3,17 +3,14 @@
 from dataclasses import dataclass
 
 from verification.codes.code import Code, all_codes, find_code
-from verification.measures.source import measure_id
-from verification.protocol.errors import Beyond, CaseError, Killed, SolverError, last_line
-from verification.protocol.machine import commit
-from verification.store.export import without_folders
-from verification.store.key import hash_of
+from verification.protocol.errors import Beyond, CaseError, SolverError
 from verification.store.laboratory import Laboratory
 from verification.suite.ability import stated_alone
 from verification.suite.case import Case
 from verification.suite.judge import Outcome
 from verification.suite.manifest import all_cases
 from verification.suite.references import resolved
+from verification.suite.refusals import remember, why_not
 from verification.suite.runner import Job, Shelf, look_up, obtain
 
 NOT_PEERS = ("exact", "mappm-reference")  # the dummy, and the same solver again
@@ -55,16 +52,6 @@ def _job(case: Case, code: Code) -> Job:
     return Job(stated_alone(case, code), case.levels_of("quick")[0].overrides, code)
 
 
-def _failure_key(job: Job) -> str:
-    """Of a failure that may be gone with other sources or another measure."""
-    return hash_of({"run": job.request.key, "sources": commit(), "measure": measure_id(job.case.file.parent)})[:24]
-
-
-def _why_not(shelf: Shelf, job: Job) -> str:
-    """The words with which the code refused or failed; empty where it did not."""
-    return without_folders(shelf.store.refusal(job.request.key) or shelf.store.refusal(_failure_key(job)))
-
-
 def missing_of_table(shelf: Shelf) -> list[Job]:
     """Runs that installed codes have not made or refused yet."""
     jobs, codes = [], table_codes()
@@ -74,21 +61,17 @@ def missing_of_table(shelf: Shelf) -> list[Job]:
                 job = _job(case, code)
             except Beyond:
                 continue
-            if not code.missing and look_up(shelf, job) is None and not _why_not(shelf, job):
+            if not code.missing and look_up(shelf, job) is None and not why_not(shelf, job):
                 jobs.append(job)
     return jobs
 
 
 def make(laboratory: Laboratory, job: Job) -> str:
-    """Returns why there is no result; empty where there is one. A scene that the code cannot do is remembered for good, and a failure
-    as long as the sources are the same; one that was killed is tried again."""
+    """Returns why there is no result; empty where there is one."""
     try:
         obtain(laboratory, job)
     except (Beyond, SolverError, CaseError) as error:
-        words, key = last_line(str(error)), job.request.key if isinstance(error, Beyond) else _failure_key(job)
-        if not isinstance(error, Killed):
-            laboratory.store.enter_refusal(key, job.request.label, job.code.name, words)
-        return words
+        return remember(laboratory, job, error)
     return ""
 
 
@@ -101,7 +84,7 @@ def _cell(shelf: Shelf, case: Case, code: Code) -> Cell:
         return Cell(code.title, why=str(error))
     entry = look_up(shelf, job)
     if entry is None:
-        return Cell(code.title, why=_why_not(shelf, job) or "not run yet")
+        return Cell(code.title, why=why_not(shelf, job) or "not run yet")
     (observable,) = resolved(job.case, None).observables
     return Cell(code.title, Outcome(observable, entry.found.values[observable.name]), entry.stored.cost.core_seconds)
 
