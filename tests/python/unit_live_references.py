@@ -210,19 +210,29 @@ def test_the_extrapolated_value_has_its_own_goal() -> None:
     values = [50.3 + 3 * h**2 for h in H]
     levels = tuple(Measured(value, 0.0) for value in values)
     finest = Outcome(given, levels[-1], {"resolution": 0.02, "Mach": 0.2}, spacings=tuple(H), levels=levels)
-    found = _at_zero(finest)
+    found = _at_zero(finest, given)
     assert found.measured.value == pytest.approx(50.3) and found.observable.goal == 0.01
     assert set(found.sources) == {"Mach", "extrapolation (three levels, order 2.00)"} and found.verdict == VALIDATED
-    tight = replace(finest, observable=replace(given, extrapolated=0.005))
-    assert _at_zero(tight).verdict == FAILED
+    tight = replace(given, extrapolated=0.005)
+    failed = _at_zero(replace(finest, observable=tight), tight)
+    assert failed.verdict == FAILED and not failed.passes
+
+
+def test_an_explanation_of_the_extrapolated_value_excuses_it_alone() -> None:
+    given = Observable("drag", "F", 50.0, 0.01, "nobody at all", goal=0.001, extrapolated=0.005, explained="the levels", explained_goal=0.05)
+    levels = tuple(Measured(50.3 + 3 * h**2, 0.0) for h in H)
+    for row, excused in (("value", False), ("extrapolated", True), ("all", True)):
+        asked = replace(given, explains=row)
+        found = _at_zero(Outcome(asked, levels[-1], {"Mach": 0.2}, spacings=tuple(H), levels=levels), asked)
+        assert found.verdict == FAILED and found.passes is excused
 
 
 def test_an_objection_on_a_level_that_is_used_bars_the_extrapolation() -> None:
     given = Observable("drag", "F", 50.0, 0.01, "nobody at all", goal=0.02, extrapolated=0.01)
     levels = (Measured(51.0, 0.0, "not settled"), Measured(50.2, 0.0), Measured(50.1, 0.0))
-    assert _at_zero(Outcome(given, levels[-1], spacings=tuple(H), levels=levels)).verdict == INCONCLUSIVE
+    assert _at_zero(Outcome(given, levels[-1], spacings=tuple(H), levels=levels), given).verdict == INCONCLUSIVE
     settled = tuple(Measured(50 + 3 * h**2, 0.0) for h in H)
-    assert _at_zero(Outcome(given, settled[-1], {"Mach": 0.1}, spacings=tuple(H), levels=settled)).verdict == VALIDATED
+    assert _at_zero(Outcome(given, settled[-1], {"Mach": 0.1}, spacings=tuple(H), levels=settled), given).verdict == VALIDATED
 
 
 LEVELS = """

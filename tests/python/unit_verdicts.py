@@ -362,8 +362,8 @@ def test_an_explanation_of_the_starts_excuses_them_alone(tmp_path: Path) -> None
                for key in ((), *(chosen for vary in case.vary for chosen in vary.sets))}
     lattice, starts = judge(case, "quick", entries)
     assert (lattice.verdict, lattice.passes, starts.verdict, starts.passes) == (FAILED, False, FAILED, True)
-    with pytest.raises(CaseError, match="explains = 'all': unknown; known are value, starts"):
-        read_cases(written(tmp_path, told.replace('"starts"', '"all"')))
+    with pytest.raises(CaseError, match="explains = 'lattice': unknown; known are value, starts, extrapolated, all"):
+        read_cases(written(tmp_path, told.replace('"starts"', '"lattice"')))
 
 
 # --- the register of goals

@@ -8,7 +8,7 @@ from verification.bits.equivalence import Equivalence
 
 TIERS = ("quick", "full")
 REFINED = ("spacing", "step")
-EXPLAINS = ("value", "starts")  # the value of the finest level, or the mean of disordered starts beside it
+EXPLAINS = ("value", "starts", "extrapolated", "all")  # the value of the finest level, the mean of disordered starts, that at dx to 0, each
 OTHER = "other"  # chapter of a case that names none
 CHAPTERS = ("rest and bits", "waves and decay", "walls", "drag on fixed bodies", "moving bodies", "falling bodies", "contact",
             "the gas-solid system", OTHER)  # of the report, in its order

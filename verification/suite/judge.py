@@ -282,7 +282,7 @@ def judge(case: Case, tier: str, entries: Entries) -> list[Outcome]:
         finest = _converge(case, outcome) if len(levels) > 1 else outcome
         outcomes.append(finest)
         if observable.extrapolated is not None and len(levels) > 2:
-            outcomes.append(_at_zero(finest))
+            outcomes.append(_at_zero(finest, observable))
         outcomes += [_of_starts(observable, finest, vary, seeds[vary.source], doubts(*(base + chosen for chosen in vary.sets)))
                      for vary in case.vary if vary.from_lattice]
     return outcomes
@@ -290,7 +290,7 @@ def judge(case: Case, tier: str, entries: Entries) -> list[Outcome]:
 
 def _explained_for(row: str, observable: Observable) -> Observable:
     """Without an explanation that is of another row."""
-    return observable if observable.explains == row else replace(observable, explained="", explained_goal=0.0)
+    return observable if observable.explains in (row, "all") else replace(observable, explained="", explained_goal=0.0)
 
 
 def _of_starts(observable: Observable, finest: Outcome, vary: Vary, values: tuple[float, ...], objection: str) -> Outcome:
@@ -302,12 +302,12 @@ def _of_starts(observable: Observable, finest: Outcome, vary: Vary, values: tupl
                    {"mean of starts": len(values) - 1}, seeds={vary.source: values}, doubt=finest.doubt)
 
 
-def _at_zero(finest: Outcome) -> Outcome:
+def _at_zero(finest: Outcome, asked: Observable) -> Outcome:
     """The value extrapolated over the levels as an outcome of its own, with its own goal."""
     found = extrapolated(finest.spacings, [level.value for level in finest.levels])
     objection = "; ".join(dict.fromkeys(filter(None, (level.objection for level in finest.levels))))
-    observable = replace(finest.observable, symbol=f"{finest.observable.symbol}, dx to 0",
-                         goal=finest.observable.extrapolated, order=None, extrapolated=None, explained="", explained_goal=0.0)
+    observable = replace(_explained_for("extrapolated", asked), symbol=f"{asked.symbol}, dx to 0", goal=asked.extrapolated, order=None,
+                         extrapolated=None)
     sources = {name: value for name, value in finest.sources.items() if name != "resolution"}
     return Outcome(observable, Measured(found.value, 0.0, objection), sources | {f"extrapolation ({found.how})": found.uncertainty},
                    finest.freedom, doubt=finest.doubt)

@@ -44,7 +44,8 @@
     published = "square_array_stokes"  # a table of reference/published, looked up for the scene
     explained = "why it misses its goal"  # of a miss whose cause is known: it stays FAILED, is shown with the cause, and fails no test
     explained_goal = 0.05           # largest error, as goal, that this explains; comes with it
-    explains = "value"              # or "starts": the mean of disordered starts, see from_lattice; "value" if left out
+    explains = "value"              # or "starts": the mean of disordered starts, see from_lattice; "extrapolated": that at dx to 0;
+                                    # "all" of them; "value" if left out
     points = ["phi_0.1"]            # it is judged at these alone; at all if left out
     needs = ["force-on-body"]       # capabilities of a code beside those that the scene asks for; may be left out
     input = 0.0                     # standard uncertainty from the inputs, absolute; 0 if left out
