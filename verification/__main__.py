@@ -187,12 +187,17 @@ def study(arguments: argparse.Namespace) -> int:
         run_study(laboratory, found, arguments.jobs, _say, arguments.repeats)
     results = results_of(laboratory, found)
     print("\n".join(lines_of(found, results)))
-    if found.chart and results:
+    file = arguments.out / f"{found.name}.svg"
+    if found.chart == "precision" and results:
         from verification.report.precision_chart import draw_precision
 
         print("\n".join(lines_of_fronts(found, points_of(laboratory.store, results), floor_of(results))))
-        file = arguments.out / f"{found.name}.svg"
         draw_precision(laboratory.store, found, results, file)
+    elif found.chart == "map" and results:
+        from verification.report.map_chart import draw_map
+
+        draw_map(found, results, file)
+    if found.chart and results:
         print(f"study: {file} and {file.with_suffix('.csv').name}")
     return 0
 

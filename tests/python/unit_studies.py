@@ -100,7 +100,7 @@ def _missing(name: str):
     (FACTORIAL.replace('["exact"]', '"exact"'), "study.block.codes"),
     (FACTORIAL.partition("[study.block.factors]")[0], "study.block.factors"),
     (FACTORIAL.partition("[[study.block]]")[0], "study.block"),
-    (FACTORIAL.replace("purpose", 'chart = "map"\npurpose'), "study.chart"),
+    (FACTORIAL.replace("purpose", 'chart = "pie"\npurpose'), "study.chart"),
     (FACTORIAL.replace("purpose", 'observable = "drag"\npurpose'), "study.observable"),
     (FACTORIAL.replace("purpose", "goal = 1\npurpose"), "study.goal"),
     ("[other]\n", "[study]"),

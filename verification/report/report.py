@@ -5,6 +5,7 @@ import json
 import math
 import shutil
 import time
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import timedelta
 from pathlib import Path
@@ -16,6 +17,7 @@ from verification.report.figures import CaseFigures, case_figures, family_figure
 from verification.report.front import classes_of, front_figures
 from verification.report.headline import Headline, changes_of_standards, headline
 from verification.report.history import changes, errors_of, read_history
+from verification.report.map_chart import Map, maps
 from verification.report.matrix import matrix_of
 from verification.report.page import write_page, write_summary
 from verification.report.precision_chart import Precision, precision_charts
@@ -136,16 +138,17 @@ def _with_published(laboratory: Laboratory) -> Store:
     return whole
 
 
-def _publish(laboratory: Laboratory, page: Path, figures: list[Path], charts: list[Precision], entry: dict) -> None:
-    """Copies page, summary, its pictures and the charts of studies to reports/published, with the store as text, and adds an entry to
-    the history there."""
+def _publish(laboratory: Laboratory, page: Path, figures: list[Path], drawn: Mapping[str, Sequence[Precision | Map]], entry: dict) -> None:
+    """Copies page, summary and its pictures to reports/published, what was drawn of studies to folders there, with the store as text,
+    and adds an entry to the history."""
     PUBLISHED.mkdir(parents=True, exist_ok=True)
     for file in (page / "index.html", page / "summary.md", *figures):
         shutil.copy(file, PUBLISHED / file.name)
-    (PUBLISHED / "charts").mkdir(exist_ok=True)
-    for chart in charts:
-        for file in (chart.figure.file, chart.figure.file.with_suffix(".csv")):
-            shutil.copy(file, PUBLISHED / "charts" / file.name)
+    for folder, members in drawn.items():
+        (PUBLISHED / folder).mkdir(exist_ok=True)
+        for one in members:
+            for file in (one.figure.file, one.figure.file.with_suffix(".csv")):
+                shutil.copy(file, PUBLISHED / folder / file.name)
     export(_with_published(laboratory), STORE)
     history = [*read_history(PUBLISHED / "history.json"), entry]
     (PUBLISHED / "history.json").write_text(json.dumps(history, indent=1) + "\n")
@@ -180,7 +183,8 @@ def draw_report(laboratory: Laboratory, tier: str, page: Path, publish: bool) ->
     with laboratory.kept(shown.key) as run:
         shown_pictures = shown_figures(run, SHOWN_COMMAND.format(steps=steps), page)
     stored, benches = _stored(), _benches(laboratory, shelf)
-    precision = precision_charts(Published(_with_published(laboratory)), page)
+    whole = Published(_with_published(laboratory))
+    precision, stability = precision_charts(whole, page), maps(whole, page)
     speed_charts = {name: page / f"{name}.svg" for name in benches}
     for name, file in speed_charts.items():
         CHARTS[name](benches[name], file)
@@ -190,7 +194,7 @@ def draw_report(laboratory: Laboratory, tier: str, page: Path, publish: bool) ->
         "rows": rows, "suite": suite, "classes": classes, "front": front_figures(classes, page),
         "matrix": matrix_of(all_cases()), "shown_pictures": shown_pictures, "shown": SHOWN, "steps": steps,
         "record": shown.record, "shown_made": shown.made,
-        "ledger": _ledger(shown.record), "stored": stored, "benches": benches, "precision": precision, "speed_charts": speed_charts, "absent": absent,
+        "ledger": _ledger(shown.record), "stored": stored, "benches": benches, "precision": precision, "maps": stability, "speed_charts": speed_charts, "absent": absent,
         "headline": headline(results, absent, len(stale)), "standards": changes_of_standards(cases_of("full")),
         "stale": stale, "table": table(laboratory), "changes": changes(history, entry["errors"]), "history": history,
         "provenance": origin, "checksums": reference_checksums(),
@@ -200,7 +204,7 @@ def draw_report(laboratory: Laboratory, tier: str, page: Path, publish: bool) ->
     write_summary(content, page / "summary.md")
     (page / "results.json").write_text(json.dumps(entry, indent=1) + "\n")
     if publish:
-        _publish(laboratory, page, [suite["overview"].file.with_suffix(".png"), shown_pictures["field"].file], precision, entry)
+        _publish(laboratory, page, [suite["overview"].file.with_suffix(".png"), shown_pictures["field"].file], {"charts": precision, "maps": stability}, entry)
     return _tell(content, page)
 
 

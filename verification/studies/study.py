@@ -3,14 +3,21 @@
 import itertools
 import math
 import tomllib
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from verification.codes.code import Code, find_code
+from verification.measures.health import HEALTH
 from verification.protocol.errors import Beyond, CaseError, SolverError, refuse
+from verification.protocol.machine import ROOT
+from verification.protocol.quantity import Measured
+from verification.protocol.sources import checksum_of_sources
 from verification.protocol.toml_text import value_text
 from verification.store.laboratory import Laboratory
+from verification.store.store import Found
+from verification.studies.classes import class_of, class_of_failure
+from verification.studies.grid import between, is_number
 from verification.suite.ability import stated_alone
 from verification.suite.case import Case, Observable
 from verification.suite.judge import Outcome
@@ -22,8 +29,9 @@ from verification.suite.refusals import remember, why_not
 from verification.suite.runner import Entry, Job, Shelf, look_up, perform
 
 DESIGNS = ("factorial", "one at a time")
-CHARTS = ("precision",)
-KEYS = ("purpose", "point", "observable", "chart", "block")
+CHARTS = ("precision", "map")
+KEYS = ("purpose", "point", "observable", "chart", "refine", "block")
+HEALTH_FILE = ROOT / "verification" / "measures" / "health.py"
 BLOCK_KEYS = ("name", "codes", "design", "factors")
 
 Setting = tuple[str, ...]  # KEY=VALUE of each factor
@@ -35,15 +43,8 @@ class Block:
 
     name: str
     codes: tuple[str, ...]
-    design: str
-    factors: dict[str, tuple[str, ...]]  # KEY=VALUE, by KEY
-
-    @property
-    def settings(self) -> list[Setting]:
-        """Of "one at a time" the case as it stands comes first, with nothing set."""
-        if self.design == "factorial":
-            return list(itertools.product(*self.factors.values()))
-        return [(), *((text,) for values in self.factors.values() for text in values)]
+    factors: tuple[str, ...]  # their keys
+    settings: tuple[Setting, ...]
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,7 @@ class Study:
     purpose: str
     observable: Observable  # the one that is judged
     chart: str  # of CHARTS, or empty
+    refine: int  # of a map: rounds in which points are added between neighbours that come out differently
     blocks: tuple[Block, ...]
 
     @property
@@ -95,6 +97,14 @@ class Result:
     entry: Entry | None = None
     outcome: Outcome | None = None
     why: str = ""
+    health: Mapping[str, float] = field(default_factory=dict)  # of a map, see verification/measures/health.py
+
+    @property
+    def kind(self) -> str:
+        """Its class, one of CLASSES."""
+        if self.outcome is None:
+            return class_of_failure(self.why)
+        return class_of(self.outcome.error, self.outcome.measured.objection, self.health)
 
 
 def _factors(where: str, table: dict) -> dict[str, tuple[str, ...]]:
@@ -119,7 +129,25 @@ def _block(where: str, table: dict) -> Block:
         refuse(where, "design", design, f"unknown; known are {', '.join(DESIGNS)}")
     if not isinstance(codes, list) or not codes or not all(isinstance(code, str) for code in codes):
         refuse(where, "codes", codes, "write a list of names of codes")
-    return Block(name, tuple(codes), design, _factors(where, table.get("factors")))
+    factors = _factors(where, table.get("factors"))
+    return Block(name, tuple(codes), tuple(factors), _settings(design, factors))
+
+
+def _settings(design: str, factors: dict[str, tuple[str, ...]]) -> tuple[Setting, ...]:
+    """Of "one at a time" the case as it stands comes first, with nothing set."""
+    if design == "factorial":
+        return tuple(itertools.product(*factors.values()))
+    return ((), *((text,) for values in factors.values() for text in values))
+
+
+def _check_map(where: str, blocks: list[Block]) -> None:
+    """A map has two axes, and one code."""
+    if len(blocks) != 1 or len(blocks[0].factors) != 2 or len(blocks[0].codes) != 1:
+        refuse(where, "block", [block.factors for block in blocks], "a map takes one block, of one code and two factors")
+    for setting in blocks[0].settings:
+        for text in setting:
+            if not is_number(text.partition("=")[2]) or float(text.partition("=")[2]) <= 0:
+                refuse(where, "block.factors", text, "an axis of a map takes numbers above 0")
 
 
 def _observable(where: str, case: Case, table: dict) -> Observable:
@@ -157,9 +185,14 @@ def read_study(file: Path) -> Study:
     if table.get("chart", "") not in ("", *CHARTS):
         refuse(where, "chart", table["chart"], f"unknown; known are {', '.join(CHARTS)}")
     name = f"{family}.{file.stem.removeprefix('study_')}"
+    made = [_block(f"{where}.block", block) for block in blocks]
+    refine = table.get("refine", 0)
+    if not isinstance(refine, int) or isinstance(refine, bool) or refine < 0 or (refine and table.get("chart") != "map"):
+        refuse(where, "refine", refine, 'write a whole number of rounds, of a study with chart = "map"')
+    if table.get("chart") == "map":
+        _check_map(where, made)
     study = Study(name, file, points[0], " ".join(str(table.get("purpose", "")).split()), _observable(where, points[0], table),
-                  table.get("chart", ""),
-                  tuple(_block(f"{where}.block", block) for block in blocks))
+                  table.get("chart", ""), refine, tuple(made))
     for _, setting in study.runs:
         scene_of(study.case, study.case.base + setting)
     return study
@@ -187,28 +220,76 @@ def trials_of(study: Study, say: Callable[[str], None] = print) -> list[Trial]:
             able[code.name] = code, stated_alone(study.case, code, study.observable)
         except Beyond as error:
             say(f"{study.name}: {code.name} SKIPPED: {error}")
-    return [Trial(block, setting, Job(case, study.case.base + setting, code))
+    whole = study.chart == "map"  # keeps the last state, from which the class is told
+    return [Trial(block, setting, Job(case, study.case.base + setting, code, finest=whole))
             for (name, setting), block in study.runs.items() if name in able for code, case in [able[name]]]
 
 
+def _health_id() -> str:
+    """Of the measures of health: edited, they measure anew."""
+    return checksum_of_sources((HEALTH_FILE,))[:16]
+
+
+def _health_of(shelf: Shelf, job: Job) -> dict[str, float]:
+    """What is stored of it."""
+    return {name: one.value for name, one in shelf.store.found(job.request.key, _health_id()).values.items()}
+
+
+def _measure_health(laboratory: Laboratory, job: Job) -> None:
+    with laboratory.kept(job.request.key) as run:
+        found = {name: Measured(measure(run), 0.0) for name, measure in HEALTH.items()}
+    laboratory.store.enter_found(job.request.key, _health_id(), Found(found, {}))
+
+
+def is_there(shelf: Shelf, study: Study, job: Job) -> bool:
+    """With all that the study asks of a run."""
+    return look_up(shelf, job) is not None and (study.chart != "map" or bool(_health_of(shelf, job)))
+
+
 def run_study(laboratory: Laboratory, study: Study, workers: int, say: Callable[[str], None], repeats: int = 1) -> None:
-    """What is missing, the cheapest first, so that there is something to see early, and then each run again until its cost was
-    measured `repeats` times. What a code refuses, and what fails, is told and remembered; what was made stays."""
-    jobs, left = [trial.job for trial in trials_of(study, say) if not why_not(laboratory, trial.job)], time_left()
+    """What is missing, the cheapest first, so that there is something to see early, then between the points of a map, and then each
+    run again until its cost was measured `repeats` times. What a code refuses, and what fails, is told and remembered; what was made
+    stays."""
+    if study.observable.live:
+        obtain_reference(laboratory, study.case, study.tier, {})
+    for _ in range(study.refine + 1):
+        study = refined(laboratory, study)
+        jobs = [trial.job for trial in trials_of(study, say) if not why_not(laboratory, trial.job)]
+        _make(laboratory, study, [job for job in jobs if not is_there(laboratory, study, job)], workers, say)
+    for count in range(2, repeats + 1):
+        _make(laboratory, study, [job for job in jobs if 0 < len(laboratory.store.costs(job.request.key)) < count], workers, say)
+
+
+def _make(laboratory: Laboratory, study: Study, jobs: list[Job], workers: int, say: Callable[[str], None]) -> None:
+    """Runs them, also where the store has them."""
+    left = time_left()
 
     def told(job: Job, share: float) -> None:
+        if study.chart == "map" and look_up(laboratory, job) is not None:
+            _measure_health(laboratory, job)
         say(f"{study.name}: {job.code.name}, {job.label}: done; {left(share):.0f} s to go")
 
     def failed(job: Job, error: Beyond | SolverError | CaseError) -> None:
         verdict = "SKIPPED" if isinstance(error, Beyond) else "FAILED"
         say(f"{study.name}: {job.code.name}, {job.label}: {verdict}: {remember(laboratory, job, error)}")
 
-    if study.observable.live:
-        obtain_reference(laboratory, study.case, study.tier, {})
-    perform(laboratory, jobs, workers, told, cheapest_first=True, failed=failed)
-    for count in range(2, repeats + 1):
-        again = [job for job in jobs if 0 < len(laboratory.store.costs(job.request.key)) < count]
-        perform(laboratory, again, workers, told, anew=True, cheapest_first=True, failed=failed)
+    known = [job for job in jobs if look_up(laboratory, job) is not None]
+    perform(laboratory, [job for job in jobs if job not in known], workers, told, cheapest_first=True, failed=failed)
+    perform(laboratory, known, workers, told, anew=True, cheapest_first=True, failed=failed)
+
+
+def refined(shelf: Shelf, study: Study) -> Study:
+    """A map with the points that its rounds add, as far as their neighbours are there; any other study as it is."""
+    for _ in range(study.refine):
+        results = _results(shelf, study)
+        if len(results) < len(study.runs):
+            break
+        first = study.blocks[0]
+        more = between(first.factors, {result.setting: result.kind for result in results})
+        if not more:
+            break
+        study = replace(study, blocks=(*study.blocks, Block("refined", first.codes, first.factors, tuple(more))))
+    return study
 
 
 def reference_of(shelf: Shelf, study: Study) -> Reference | None:
@@ -220,16 +301,20 @@ def reference_of(shelf: Shelf, study: Study) -> Reference | None:
 
 def results_of(shelf: Shelf, study: Study) -> list[Result]:
     """Of the runs that are there, and of those that failed or were refused."""
+    return _results(shelf, refined(shelf, study))
+
+
+def _results(shelf: Shelf, study: Study) -> list[Result]:
     found, reference = [], reference_of(shelf, study)
     if study.observable.live and reference is None:
         return []
     for trial in trials_of(study, lambda text: None):
         job = trial.job
         entry, why = look_up(shelf, job), why_not(shelf, job)
-        if entry is not None:
+        if is_there(shelf, study, job):
             (observable,) = resolved(replace(job.case, scene=entry.scene), reference).observables
             outcome = Outcome(observable, entry.found.values[observable.name])
-            found.append(Result(trial.block, trial.setting, job.code, job, entry, outcome))
+            found.append(Result(trial.block, trial.setting, job.code, job, entry, outcome, health=_health_of(shelf, job)))
         elif why:
             found.append(Result(trial.block, trial.setting, job.code, job, why=why))
     return found
@@ -238,7 +323,8 @@ def results_of(shelf: Shelf, study: Study) -> list[Result]:
 def lines_of(study: Study, results: list[Result]) -> list[str]:
     """A table: what was set, error and core-seconds."""
     made = sum(result.entry is not None for result in results)
-    lines = [f"{study.name}: {made} of {len(study.runs)} runs; {study.observable.symbol}, error and core-seconds"]
+    asked = max(len(results), len(study.runs))
+    lines = [f"{study.name}: {made} of {asked} runs; {study.observable.symbol}, error and core-seconds"]
     width = max((len(" ".join(result.setting)) for result in results), default=0)
     for result in results:
         head = f"{result.code.name:12} {' '.join(result.setting) or 'as declared':{width}}"
@@ -246,5 +332,6 @@ def lines_of(study: Study, results: list[Result]) -> list[str]:
             lines.append(f"{head}  {result.why}")
             continue
         error = "no value" if math.isnan(result.outcome.error) else result.outcome.error_text
-        lines.append(f"{head}  {error:>10}  {result.entry.stored.cost.core_seconds:8.3g} s")
+        kind = f"  {result.kind}" if study.chart == "map" else ""
+        lines.append(f"{head}  {error:>10}  {result.entry.stored.cost.core_seconds:8.3g} s{kind}")
     return lines
