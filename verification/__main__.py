@@ -1,6 +1,7 @@
 """The laboratory's command line: cases, codes, the store, the report. See README.md of this folder."""
 
 import argparse
+import os
 import signal
 import sys
 import tempfile
@@ -331,7 +332,12 @@ def main() -> int:
     if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
         signal.signal(signal.SIGHUP, _stopped)
     try:
-        return _called(_parser().parse_args())
+        status = _called(_parser().parse_args())
+        sys.stdout.flush()
+        return status
+    except BrokenPipeError:  # who reads has seen enough, as `head` has
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 141
     except KeyboardInterrupt:
         print("verification: stopped; what was made before is in the store", file=sys.stderr)
         return 130

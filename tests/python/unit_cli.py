@@ -173,3 +173,9 @@ def test_a_module_is_run_by_the_python_of_the_environment_whichever_was_called()
         called, own = (subprocess.run([python, "-m", *words], cwd=ROOT, capture_output=True, text=True)
                        for python in (sys._base_executable, sys.executable))
         assert (called.returncode, called.stdout) == (0, own.stdout), called.stderr
+
+
+def test_a_reader_that_has_seen_enough_ends_a_list_quietly() -> None:
+    words = f"set -o pipefail; {sys.executable} -m verification list | head -1"
+    finished = subprocess.run(["bash", "-c", words], cwd=ROOT, capture_output=True, text=True)
+    assert finished.stderr == "" and len(finished.stdout.splitlines()) == 1
