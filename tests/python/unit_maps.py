@@ -138,13 +138,15 @@ def test_flow_is_in_units_of_the_declared_velocity() -> None:
     assert flow(state(lattice(4), 4.0, series=series)) == 1.0
 
 
-def test_a_map_runs_its_points_and_those_between(study_file: Path, tmp_path: Path) -> None:
+def test_a_map_runs_its_points_and_those_between(study_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     laboratory, study = Laboratory(tmp_path / "lab"), read_study(study_file)
     run_study(laboratory, study, 2, lambda text: None)
     results = results_of(laboratory, study)
     kinds = {result.setting: result.kind for result in results}
     assert kinds["run.step_factor=2.0", "N=8"] == REFUSED  # beyond the limit of sound
     assert len(results) > 6 and all(result.health["nearest"] > 0.5 for result in results if result.outcome)
+    monkeypatch.setattr("verification.suite.refusals.commit", lambda: "another")
+    assert results_of(laboratory, study) == results  # what the solver refuses, it refuses as long as its numerics are the same
     drawn = draw_map(study, results, tmp_path / "where.svg")
     assert sum(count for _, count, _ in drawn.counts) == len(results)
     assert len((tmp_path / "where.csv").read_text().splitlines()) == len(results) + 1
