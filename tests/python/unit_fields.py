@@ -157,3 +157,13 @@ def test_a_fluid_at_rest_is_said_to_be(tmp_path: Path, drawn: list) -> None:
     axes = drawn[0].axes[0]
     assert "at rest" in axes.texts[0].get_text() and not axes.images
     assert (tmp_path / "rest.png").stat().st_size > 1000
+
+
+def test_a_wall_that_is_limited_along_two_axes_is_as_long_as_they_say() -> None:
+    """Of a tank in space, whose walls end at each other; a wall whose second limit misses the middle plane is not seen."""
+    wall = {"shape": "wall", "axis": "y", "position": 0.8, "thickness": 0.2}
+    limits = [{"axis": "x", "from": 0.0, "to": 0.5}, {"axis": "z", "from": 0.0, "to": 0.7}]
+    (strip,) = strips_of({"box": {"size": [1.0, 1.0, 1.0]}, "body": [wall | {"extent": limits}]})
+    assert (*strip.low, *strip.high) == pytest.approx((0.0, 0.8, 0.5, 1.0))
+    above = [limits[0], {"axis": "z", "from": 0.6, "to": 0.7}]
+    assert strips_of({"box": {"size": [1.0, 1.0, 1.0]}, "body": [wall | {"extent": above}]}) == []

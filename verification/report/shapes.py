@@ -79,9 +79,10 @@ def _strip(body: dict, box: np.ndarray) -> Strip | None:
     low, high = np.zeros(len(box)), box.copy()
     low[axis] = in_si(body["position"])
     high[axis] = low[axis] + in_si(body["thickness"])
-    if "extent" in body:
-        along = "xyz".index(body["extent"]["axis"])
-        low[along], high[along] = (in_si(body["extent"][end]) for end in ("from", "to"))
+    given = body.get("extent", [])
+    for limits in given if isinstance(given, list) else [given]:
+        along = "xyz".index(limits["axis"])
+        low[along], high[along] = (in_si(limits[end]) for end in ("from", "to"))
     if len(box) == 3 and (axis == 2 or not low[2] <= 0.5 * box[2] <= high[2]):
         return None
     velocity = np.array([in_si(value) for value in body.get("velocity", [0.0] * len(box))])
