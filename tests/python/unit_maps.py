@@ -19,6 +19,7 @@ from verification.studies.classes import (
     DRIFTING,
     JAMMED,
     LEAKED,
+    NO_VALUE,
     REFUSED,
     RIGHT,
     WRONG,
@@ -60,7 +61,7 @@ def study_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (-0.03, "", {}, DRIFTING),
     (0.06, "", {}, WRONG),
     (-0.06, "still faster at the end", {}, WRONG),
-    (float("nan"), "", {}, WRONG),
+    (float("nan"), "fewer than five snapshots", {}, NO_VALUE),
     (0.01, "", {"nearest": 0.3}, CLUMPED),
     (0.5, "", {"flow": 0.05}, JAMMED),
     (0.01, "", {"inside": 0.001, "nearest": 0.3}, LEAKED),
@@ -72,6 +73,7 @@ def test_the_worst_counts(error: float, objection: str, health: dict[str, float]
 @pytest.mark.parametrize("words, kind", [
     ("mappm: step 82: particle 754: moves more than rcut/4 in one step (velocity 0.5 c before it); the step is too long", BLOWN_UP),
     ("mappm: step 3: particle 4: density 0.1 times rest, outside 0.25 to 4; the fluid tears", BLOWN_UP),
+    ("out/series.csv: lowest_density_ratio: line 2: 'nan': must be a finite number", BLOWN_UP),
     ("mappm: scene.toml: run.step_factor = 2: the step 0.0125 is longer than 0.0094, the last that sound allows", REFUSED),
 ])
 def test_last_words_tell_what_was_begun(words: str, kind: str) -> None:
@@ -110,6 +112,10 @@ def test_neighbours_are_sought_across_the_border() -> None:
     assert nearest(state(points, 10.0)) == pytest.approx(0.1, rel=0.01)
 
 
+def test_particles_at_one_place_are_close() -> None:
+    assert nearest(state(np.vstack([lattice(20), lattice(20)]), 20.0)) == 0.0
+
+
 def test_pairs_are_close() -> None:
     points = lattice(40)
     rng = np.random.default_rng(1)
@@ -145,6 +151,12 @@ def test_a_map_runs_its_points_and_those_between(study_file: Path, tmp_path: Pat
     kinds = {result.setting: result.kind for result in results}
     assert kinds["run.step_factor=2.0", "N=8"] == REFUSED  # beyond the limit of sound
     assert len(results) > 6 and all(result.health["nearest"] > 0.5 for result in results if result.outcome)
+    said: list[str] = []
+    run_study(laboratory, study, 2, said.append)
+    assert not said  # what is shown is all that it runs
+    monkeypatch.setattr("verification.studies.study._health_id", lambda: "of other measures")
+    run_study(laboratory, study, 2, said.append)
+    assert not said and results_of(laboratory, study) == results  # measured again, of the states that were kept
     monkeypatch.setattr("verification.suite.refusals.commit", lambda: "another")
     assert results_of(laboratory, study) == results  # what the solver refuses, it refuses as long as its numerics are the same
     drawn = draw_map(study, results, tmp_path / "where.svg")

@@ -14,7 +14,7 @@ from verification.codes.code import find_code
 from verification.protocol.errors import SolverError
 from verification.report.precision_chart import draw_precision
 from verification.store.laboratory import Laboratory
-from verification.studies.precision import Point, front_of, line_of, points_of, price_of, slope_of
+from verification.studies.precision import Point, digit_of, front_of, line_of, points_of, price_of, slope_of
 from verification.studies.study import find_study, read_study, results_of, run_study
 from verification.suite import runner
 
@@ -71,13 +71,25 @@ def test_the_slope_leaves_out_what_the_reference_cannot_tell() -> None:
     front = [point(cost**-0.75, cost) for cost in (1.0, 4.0, 16.0)] + [point(0.1, 1e4)]
     assert slope_of(front, floor=0.11) == pytest.approx(-0.75)
     assert slope_of(front[:2], floor=0.0) is None
+    assert slope_of([point(0.1 / k, k) for k in (1.0, 2.0, 3.0)], floor=0.0) is None  # over less than a decade of cost
+
+
+def test_errors_below_the_floor_are_alike() -> None:
+    cheap, finer = point(0.004, 1), point(0.001, 9)
+    assert front_of([cheap, finer], floor=0.005) == [cheap]
+    assert price_of([cheap], 0.001, floor=0.005) is None
+
+
+def test_a_digit_costs_by_the_slope() -> None:
+    assert digit_of(-0.5) == pytest.approx(100.0)
+    assert digit_of(-1e-5) == math.inf and digit_of(0.1) == math.inf and digit_of(None) is None
 
 
 def test_starts_are_one_point_and_timings_one_cost(study_file: Path, tmp_path: Path) -> None:
     laboratory, study = Laboratory(tmp_path / "lab"), read_study(study_file)
     run_study(laboratory, study, 1, lambda text: None, repeats=2)
     points = points_of(laboratory.store, results_of(laboratory, study))
-    assert [one.setting for one in points] == [("N=8",), ("N=16",)]
+    assert [one.setting[0] for one in points] == ["N=8", "N=16"]
     assert all(len(one.errors) == 2 and len(one.seconds) == 4 for one in points)
 
 
@@ -86,7 +98,7 @@ def test_the_chart_has_a_row_a_point(study_file: Path, tmp_path: Path) -> None:
     run_study(laboratory, study, 1, lambda text: None)
     drawn = draw_precision(laboratory.store, study, results_of(laboratory, study), tmp_path / "charts" / "cost.svg")
     rows = list(csv.DictReader(io.StringIO((tmp_path / "charts" / "cost.csv").read_text())))
-    assert [row["setting"] for row in rows] == ["N=8", "N=16"] and "yes" in {row["on the front"] for row in rows}
+    assert [row["setting"].split()[0] for row in rows] == ["N=8", "N=16"] and "yes" in {row["on the front"] for row in rows}
     assert "<svg" in drawn.figure.file.read_text() and drawn.runs == drawn.asked == 4
 
 

@@ -12,7 +12,7 @@ BLOCK = 512  # PPs whose distances are worked out at a time
 def _distances(points: np.ndarray, box: np.ndarray, reach: float) -> np.ndarray:
     """(n,) from each point to the nearest other, in a periodic box; `reach` is how far is looked, and stands where there is none."""
     order = np.argsort(points[:, 0])
-    points = points[order]
+    points, places = points[order], np.arange(len(points))
     found = np.full(len(points), reach)
     for start in range(0, len(points), BLOCK):
         block = points[start : start + BLOCK]
@@ -23,7 +23,7 @@ def _distances(points: np.ndarray, box: np.ndarray, reach: float) -> np.ndarray:
         gap = np.abs(block[:, None, :] - others[None, :, :])
         gap = np.minimum(gap, box - gap)
         square = np.einsum("ijk,ijk->ij", gap, gap)
-        square[square == 0.0] = np.inf  # itself
+        square[places[start : start + BLOCK, None] == places[near]] = np.inf  # itself
         found[start : start + BLOCK] = np.minimum(reach, np.sqrt(square.min(axis=1)))
     back = np.empty_like(found)
     back[order] = found

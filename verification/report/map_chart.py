@@ -9,15 +9,14 @@ from matplotlib.colors import ListedColormap
 
 from verification.report.canvas import figure_of
 from verification.report.figure import Figure, csv_of
-from verification.studies.classes import ABOUT, BLOWN_UP, CLASSES, CLUMPED, DRIFTING, JAMMED, LEAKED, REFUSED, RIGHT, WRONG
+from verification.studies.classes import ABOUT, BLOWN_UP, CLASSES, CLUMPED, DRIFTING, JAMMED, LEAKED, NO_VALUE, REFUSED, RIGHT, WRONG
 from verification.studies.grid import place_of
-from verification.studies.study import Result, Study, all_studies, read_study, results_of
-from verification.suite.parameters import overrides_of
+from verification.studies.study import Result, Study, all_studies, command_of, read_study, results_of
 from verification.suite.runner import Shelf
 
 # Told apart by marks without colour; the colours are those of Okabe and Ito (2008), which the colour-blind tell apart.
 LOOKS = {RIGHT: ("#0072b2", "o"), DRIFTING: ("#56b4e9", "s"), WRONG: ("#d55e00", "X"), CLUMPED: ("#cc79a7", "P"), JAMMED: ("#e69f00", "v"),
-         LEAKED: ("#f0e442", "D"), BLOWN_UP: ("#000000", "x"), REFUSED: ("#999999", "_")}
+         LEAKED: ("#f0e442", "D"), BLOWN_UP: ("#000000", "x"), NO_VALUE: ("#009e73", "1"), REFUSED: ("#999999", "_")}
 GRAIN = 160  # cells of the ground along each axis
 HEAD = ("class", "setting", "error", "objection or last words", "nearest PP (dx)", "share inside solids", "flow / declared", "core-seconds", "commit",
         "machine", "command")
@@ -32,19 +31,14 @@ class Map:
     wrong: tuple[tuple[str, str], ...]  # error and command of what is wrong but alive, the worst first
 
 
-def _command(study: Study, result: Result) -> str:
-    sets = " ".join(f"--set {text}" for text in overrides_of(study.case, result.job.overrides))
-    return f"mappm run cases/{study.case.family}/case.toml {sets}".strip()
-
-
 def _rows(study: Study, results: list[Result]) -> list[tuple]:
     rows = []
     for one in results:
         known = one.outcome is not None
         rows.append((one.kind, " ".join(one.setting), one.outcome.error if known else math.nan, one.outcome.measured.objection if known else one.why,
                      *(float(one.health.get(name, math.nan)) for name in ("nearest", "inside", "flow")),
-                     one.entry.stored.cost.core_seconds if known else math.nan, one.entry.stored.made.source if known else "",
-                     one.entry.stored.made.machine if known else "", _command(study, one)))
+                     one.entry.stored.cost.core_seconds if known and one.entry.stored.cost else math.nan, one.entry.stored.made.source if known else "",
+                     one.entry.stored.made.machine if known else "", command_of(study, one.job)))
     return rows
 
 
@@ -78,8 +72,8 @@ def draw_map(study: Study, results: list[Result], file: Path) -> Map:
             members = places[[one == kind for one in kinds]]
             if len(members):
                 colour, mark = LOOKS[kind]
-                axes.plot(members[:, 0], members[:, 1], mark, color=colour, markeredgecolor="black" if mark not in "x_" else colour,
-                          markeredgewidth=0.5 if mark not in "x_" else 1.4, markersize=6, label=f"{kind} ({len(members)})")
+                axes.plot(members[:, 0], members[:, 1], mark, color=colour, markeredgecolor="black" if mark not in "x_1" else colour,
+                          markeredgewidth=0.5 if mark not in "x_1" else 1.4, markersize=6, label=f"{kind} ({len(members)})")
         axes.set_xlabel(study.blocks[0].factors[0])
         axes.set_ylabel(study.blocks[0].factors[1])
     text = csv_of(HEAD, _rows(study, results))
@@ -88,7 +82,7 @@ def draw_map(study: Study, results: list[Result], file: Path) -> Map:
     caption = f"{study.name}: how {len(results)} runs came out, over {' and '.join(study.blocks[0].factors)}. A place has the colour of the nearest run."
     return Map(study.name, study.purpose, Figure(file, caption, text, f"python3 -m verification study {study.name}"),
                tuple((kind, kinds.count(kind), ABOUT[kind]) for kind in CLASSES if kind in kinds),
-               tuple((one.outcome.error_text, _command(study, one)) for one in wrong))
+               tuple((one.outcome.error_text, command_of(study, one.job)) for one in wrong))
 
 
 def maps(shelf: Shelf, page: Path) -> list[Map]:

@@ -7,7 +7,19 @@ from pathlib import Path
 from verification.report.canvas import BLUE, DARK, GREEN, GREY, figure_of
 from verification.report.figure import Figure, csv_of
 from verification.store.store import Store
-from verification.studies.precision import HEAD, Point, by_code, floor_of, front_of, line_of, points_of, price_of, rows_of, slope_of
+from verification.studies.precision import (
+    HEAD,
+    Point,
+    by_code,
+    digit_of,
+    floor_of,
+    front_of,
+    line_of,
+    points_of,
+    price_of,
+    rows_of,
+    slope_of,
+)
 from verification.studies.study import Result, Study, all_studies, read_study, results_of
 from verification.suite.runner import Shelf
 
@@ -23,7 +35,7 @@ def _spread(axes, point: Point, colour: str) -> None:
     low, high = (max(one, LEAST) for one in point.error_range)
     if high > low:
         axes.plot([point.cost, point.cost], [low, high], color=colour, linewidth=0.8, alpha=0.6)
-    least, most = min(point.seconds), max(point.seconds)
+    least, most = min(point.seconds, default=0.0), max(point.seconds, default=0.0)
     if most > least:
         axes.plot([least, most], [max(point.error, LEAST)] * 2, color=colour, linewidth=0.8, alpha=0.6)
 
@@ -31,7 +43,7 @@ def _spread(axes, point: Point, colour: str) -> None:
 def _points(axes, points: list[Point], colour: str, mark: str, label: str) -> None:
     """Filled where the value may be trusted, hollow where not."""
     for trusted in (True, False):
-        members = [one for one in points if math.isfinite(one.error) and one.counts is trusted]
+        members = [one for one in points if math.isfinite(one.error) and one.cost > 0 and one.counts is trusted]
         for point in members:
             _spread(axes, point, colour)
         if members:
@@ -52,15 +64,16 @@ def _draw(axes, study: Study, points: list[Point], floor: float) -> None:
                 _points(axes, [one for one in members if one.block == block], colour, OWN_MARKS[blocks.index(block) % len(OWN_MARKS)], label)
         else:
             _points(axes, members, colour, MARKS.get(code, "P"), title)
-        front = front_of(members)
+        front = front_of(members, floor)
         axes.plot([one.cost for one in front], [max(one.error, LEAST) for one in front], linestyle=line, color=colour, linewidth=1.6,
                   zorder=3, label=f"{title}, the cheapest" if front else None)
     low, high = axes.get_ylim()
+    low, high = min(low, ASKED / 1.5), max(high, 1.5 * ASKED)
     if floor > low:
         axes.axhspan(low, floor, facecolor="none", edgecolor=GREY, hatch="///", alpha=0.35, linewidth=0,
                      label="below twice the uncertainty of the reference")
     axes.set_ylim(low, high)
-    _order_two(axes, study, points)
+    _order_two(axes, study, points, floor)
     axes.axhline(ASKED, color=GREY, linewidth=0.8)
     axes.annotate("1 %", (1, ASKED), xycoords=("axes fraction", "data"), xytext=(-2, 2), textcoords="offset points", ha="right",
                   fontsize=8, color=GREY)
@@ -68,10 +81,10 @@ def _draw(axes, study: Study, points: list[Point], floor: float) -> None:
     axes.set_ylabel(f"error of {study.observable.symbol}" if is_absolute(study) else f"relative error of {study.observable.symbol}")
 
 
-def _order_two(axes, study: Study, points: list[Point]) -> None:
+def _order_two(axes, study: Study, points: list[Point], floor: float) -> None:
     """The slope of a method of order two whose step falls with its spacing: cost as dx^-(D+1), error as dx^2. From the first point of
     the front of MaPPM on."""
-    front = front_of(by_code(points).get("mappm", []))
+    front = front_of(by_code(points).get("mappm", []), floor)
     if len(front) < 2:
         return
     power = -2 / (len(study.case.scene["box"]["size"]) + 1)
@@ -92,9 +105,10 @@ class Front:
 
     code: str
     price: float | None  # core-seconds for ASKED; None where no setting comes so far
-    least: float  # error
+    least: float  # error, or the floor where it is below that
+    slope: float | None
     digit: float | None  # times the cost for a tenth of the error
-    lines: tuple[tuple[float, float, str], ...]  # error, core-seconds, command
+    lines: tuple[tuple[float, float, float, str], ...]  # error, core-seconds, those of set-up, command
 
 
 @dataclass(frozen=True)
@@ -110,12 +124,12 @@ class Precision:
 
 
 def _front(study: Study, points: list[Point], floor: float) -> Front | None:
-    front = front_of(points)
+    front = front_of(points, floor)
     if not front:
         return None
     slope = slope_of(front, floor)
-    return Front(points[0].code.title, price_of(front, ASKED), front[-1].error, 10 ** (-1 / slope) if slope is not None and slope < 0 else None,
-                 tuple((point.error, point.cost, line_of(study, point)) for point in front))
+    return Front(points[0].code.title, price_of(front, ASKED, floor), max(front[-1].error, floor), slope, digit_of(slope),
+                 tuple((point.error, point.cost, point.setup, line_of(study, point)) for point in front))
 
 
 def draw_precision(store: Store, study: Study, results: list[Result], file: Path) -> Precision:
@@ -124,7 +138,7 @@ def draw_precision(store: Store, study: Study, results: list[Result], file: Path
     file.parent.mkdir(parents=True, exist_ok=True)
     with figure_of(file, 6.4, 4.4) as axes:
         _draw(axes, study, points, floor)
-    text = csv_of(HEAD, rows_of(study, points))
+    text = csv_of(HEAD, rows_of(study, points, floor))
     file.with_suffix(".csv").write_text(text)
     fronts = (_front(study, members, floor) for members in by_code(points).values())
     made = sum(result.entry is not None for result in results)

@@ -1,6 +1,7 @@
 """The report: one self-contained HTML page and a Markdown summary, drawn from what the store holds. It runs nothing, and says of
 every figure when, where and from which sources it was made."""
 
+import csv
 import json
 import math
 import shutil
@@ -147,11 +148,20 @@ def _publish(laboratory: Laboratory, page: Path, figures: list[Path], drawn: Map
     for folder, members in drawn.items():
         (PUBLISHED / folder).mkdir(exist_ok=True)
         for one in members:
+            before = PUBLISHED / folder / one.figure.file.with_suffix(".csv").name
+            if before.exists() and _rows_with_values(before) > _rows_with_values(one.figure.file.with_suffix(".csv")):
+                continue  # a code that is not installed here, or a reference that was not run
             for file in (one.figure.file, one.figure.file.with_suffix(".csv")):
                 shutil.copy(file, PUBLISHED / folder / file.name)
     export(_with_published(laboratory), STORE)
     history = [*read_history(PUBLISHED / "history.json"), entry]
     (PUBLISHED / "history.json").write_text(json.dumps(history, indent=1) + "\n")
+
+
+def _rows_with_values(file: Path) -> int:
+    """Of the CSV of a study: rows with an error."""
+    with file.open() as text:
+        return sum(row.get("error", "nan") not in ("nan", "") for row in csv.DictReader(text))
 
 
 def _benches(laboratory: Laboratory, shelf: Published) -> dict[str, Figures]:

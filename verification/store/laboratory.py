@@ -32,7 +32,7 @@ STORE = "store.sqlite"
 
 
 def made_now(command: str = "", source: str | None = None) -> Made:
-    return Made(f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}", f"{processor()}, {cores()} cores",
+    return Made(f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%S.%fZ}", f"{processor()}, {cores()} cores",
                 commit() if source is None else source, command)
 
 

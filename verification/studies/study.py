@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import shlex
 import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -22,7 +23,7 @@ from verification.suite.ability import stated_alone
 from verification.suite.case import Case, Observable
 from verification.suite.judge import Outcome
 from verification.suite.manifest import cases_folder, find_cases
-from verification.suite.parameters import scene_of
+from verification.suite.parameters import overrides_of, scene_of
 from verification.suite.progress import time_left
 from verification.suite.references import Reference, look_up_reference, obtain_reference, resolved
 from verification.suite.refusals import remember, why_not
@@ -104,7 +105,7 @@ class Result:
         """Its class, one of CLASSES."""
         if self.outcome is None:
             return class_of_failure(self.why)
-        return class_of(self.outcome.error, self.outcome.measured.objection, self.health)
+        return class_of(self.outcome.error, self.outcome.objection, self.health)
 
 
 def _factors(where: str, table: dict) -> dict[str, tuple[str, ...]]:
@@ -236,8 +237,14 @@ def _health_of(shelf: Shelf, job: Job) -> dict[str, float]:
 
 
 def _measure_health(laboratory: Laboratory, job: Job) -> None:
+    """What a code did not leave the files for is NaN, which speaks for no class."""
+    found = {}
     with laboratory.kept(job.request.key) as run:
-        found = {name: Measured(measure(run), 0.0) for name, measure in HEALTH.items()}
+        for name, measure in HEALTH.items():
+            try:
+                found[name] = Measured(measure(run), 0.0)
+            except (KeyError, IndexError, FileNotFoundError):
+                found[name] = Measured(math.nan, 0.0)
     laboratory.store.enter_found(job.request.key, _health_id(), Found(found, {}))
 
 
@@ -250,22 +257,24 @@ def run_study(laboratory: Laboratory, study: Study, workers: int, say: Callable[
     """What is missing, the cheapest first, so that there is something to see early, then between the points of a map, and then each
     run again until its cost was measured `repeats` times. What a code refuses, and what fails, is told and remembered; what was made
     stays."""
-    if study.observable.live:
-        obtain_reference(laboratory, study.case, study.tier, {})
+    if study.observable.live and (why := _why_unusable(obtain_reference(laboratory, study.case, study.tier, {}), study)):
+        say(f"{study.name}: {study.case.live.code}, the reference: {why}")
     for _ in range(study.refine + 1):
-        study = refined(laboratory, study)
-        jobs = [trial.job for trial in trials_of(study, say) if not why_not(laboratory, trial.job)]
-        _make(laboratory, study, [job for job in jobs if not is_there(laboratory, study, job)], workers, say)
+        whole = refined(laboratory, study)
+        jobs = [trial.job for trial in trials_of(whole, say) if not why_not(laboratory, trial.job)]
+        _make(laboratory, whole, [job for job in jobs if not is_there(laboratory, study, job)], workers, say)
     for count in range(2, repeats + 1):
-        _make(laboratory, study, [job for job in jobs if 0 < len(laboratory.store.costs(job.request.key)) < count], workers, say)
+        again = [job for job in jobs if 0 < len(laboratory.store.costs(job.request.key)) < count]
+        # What the store keeps of a run is kept: its last state may be in a picture of the suite.
+        _make(laboratory, study, [replace(job, finest=laboratory.store.has_files(job.request.key)) for job in again], workers, say, anew=True)
 
 
-def _make(laboratory: Laboratory, study: Study, jobs: list[Job], workers: int, say: Callable[[str], None]) -> None:
-    """Runs them, also where the store has them."""
+def _make(laboratory: Laboratory, study: Study, jobs: list[Job], workers: int, say: Callable[[str], None], anew: bool = False) -> None:
+    """Runs them; of a map, what the store has without figures of its last state is measured where that is kept, and else run anew."""
     left = time_left()
 
     def told(job: Job, share: float) -> None:
-        if study.chart == "map" and look_up(laboratory, job) is not None:
+        if study.chart == "map":
             _measure_health(laboratory, job)
         say(f"{study.name}: {job.code.name}, {job.label}: done; {left(share):.0f} s to go")
 
@@ -273,9 +282,13 @@ def _make(laboratory: Laboratory, study: Study, jobs: list[Job], workers: int, s
         verdict = "SKIPPED" if isinstance(error, Beyond) else "FAILED"
         say(f"{study.name}: {job.code.name}, {job.label}: {verdict}: {remember(laboratory, job, error)}")
 
-    known = [job for job in jobs if look_up(laboratory, job) is not None]
-    perform(laboratory, [job for job in jobs if job not in known], workers, told, cheapest_first=True, failed=failed)
-    perform(laboratory, known, workers, told, anew=True, cheapest_first=True, failed=failed)
+    known = [job for job in jobs if look_up(laboratory, job) is not None] if study.chart == "map" and not anew else []
+    for job in known:
+        if laboratory.store.has_files(job.request.key):
+            _measure_health(laboratory, job)
+    lost = [job for job in known if not is_there(laboratory, study, job)]
+    perform(laboratory, [job for job in jobs if job not in known], workers, told, anew=anew, cheapest_first=True, failed=failed)
+    perform(laboratory, lost, workers, told, anew=True, cheapest_first=True, failed=failed)
 
 
 def refined(shelf: Shelf, study: Study) -> Study:
@@ -292,6 +305,13 @@ def refined(shelf: Shelf, study: Study) -> Study:
     return study
 
 
+def _why_unusable(reference: Reference | None, study: Study) -> str:
+    """Why a reference cannot serve; empty where it can."""
+    if reference is None:
+        return "was not run"
+    return reference.missing or reference.objection or ("" if study.observable.live in reference.quantities else "gave no such quantity")
+
+
 def reference_of(shelf: Shelf, study: Study) -> Reference | None:
     """Of the code that the observable is held against; None where there is no such code, or it was not run."""
     if not study.observable.live:
@@ -306,7 +326,7 @@ def results_of(shelf: Shelf, study: Study) -> list[Result]:
 
 def _results(shelf: Shelf, study: Study) -> list[Result]:
     found, reference = [], reference_of(shelf, study)
-    if study.observable.live and reference is None:
+    if study.observable.live and _why_unusable(reference, study):
         return []
     for trial in trials_of(study, lambda text: None):
         job = trial.job
@@ -318,6 +338,17 @@ def _results(shelf: Shelf, study: Study) -> list[Result]:
         elif why:
             found.append(Result(trial.block, trial.setting, job.code, job, why=why))
     return found
+
+
+def command_of(study: Study, job: Job) -> str:
+    """Makes a run again, as a line for a shell: by the solver itself, or by the suite where the code is another."""
+    if job.code.name == "mappm":
+        file = study.case.file.relative_to(ROOT) if study.case.file.is_relative_to(ROOT) else study.case.file
+        words, sets = ["mappm", "run", str(file)], overrides_of(study.case, job.overrides)
+    else:
+        words = ["python3", "-m", "verification", "run", study.case.name, "--code", job.code.name]
+        sets = job.overrides[len(study.case.base) :]
+    return shlex.join([*words, *(word for text in sets for word in ("--set", text))])
 
 
 def lines_of(study: Study, results: list[Result]) -> list[str]:
@@ -333,5 +364,6 @@ def lines_of(study: Study, results: list[Result]) -> list[str]:
             continue
         error = "no value" if math.isnan(result.outcome.error) else result.outcome.error_text
         kind = f"  {result.kind}" if study.chart == "map" else ""
-        lines.append(f"{head}  {error:>10}  {result.entry.stored.cost.core_seconds:8.3g} s{kind}")
+        cost = result.entry.stored.cost
+        lines.append(f"{head}  {error:>10}  {f'{cost.core_seconds:8.3g} s' if cost else 'no cost'}{kind}")
     return lines

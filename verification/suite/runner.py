@@ -199,10 +199,13 @@ def perform(laboratory: Laboratory, jobs: list[Job], workers: int, told: Told = 
         try:
             obtain(laboratory, job, anew)
         except (Beyond, SolverError, CaseError) as error:
+            with lock:
+                behind += weights[id(job)]
             if failed is None:
                 failures.append(error)
             else:
                 failed(job, error)
+            return
         with lock:
             behind += weights[id(job)]
             told(job, behind / total)
