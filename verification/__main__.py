@@ -173,7 +173,7 @@ def report(arguments: argparse.Namespace) -> int:
 
 def study(arguments: argparse.Namespace) -> int:
     """Lists the studies, or runs what is missing of one, prints its table and draws its chart."""
-    from verification.studies.precision import floor_of, lines_of_fronts, points_of
+    from verification.studies.precision import lines_of_fronts
     from verification.studies.study import all_studies, find_study, lines_of, read_study, results_of, run_study
 
     if arguments.name is None:
@@ -192,8 +192,7 @@ def study(arguments: argparse.Namespace) -> int:
     if found.chart == "precision" and results:
         from verification.report.precision_chart import draw_precision
 
-        print("\n".join(lines_of_fronts(found, points_of(laboratory.store, results), floor_of(results))))
-        draw_precision(laboratory.store, found, results, file)
+        print("\n".join(lines_of_fronts(draw_precision(laboratory.store, found, results, file).fronts)))
     elif found.chart == "map" and results:
         from verification.report.map_chart import draw_map
 

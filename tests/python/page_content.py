@@ -17,13 +17,14 @@ from verification.report.headline import changes_of_standards, headline
 from verification.report.history import changes, errors_of
 from verification.report.map_chart import Map
 from verification.report.matrix import matrix_of
-from verification.report.precision_chart import Front, Precision
+from verification.report.precision_chart import Precision
 from verification.report.reference_codes import reference_codes
 from verification.report.report import PUBLISHED, _stored
 from verification.report.speed_charts import CHARTS
 from verification.store.figures import read_benches
 from verification.store.store import Made
 from verification.studies.classes import ABOUT, RIGHT, WRONG
+from verification.studies.precision import Front
 from verification.suite.case import Case, Observable
 from verification.suite.judge import Outcome
 from verification.suite.ladder import converge
@@ -114,8 +115,8 @@ def content(out: Path) -> dict:
     cells = [SimpleNamespace(code="MaPPM", outcome=results[0].outcomes[0], core_seconds=1.5, why=""),
              SimpleNamespace(code="Other", outcome=None, core_seconds=0.0, why=why)]
     figure = next(figures[name].charts[0] for name in figures if figures[name].charts)
-    front = Front("MaPPM", 0.5, 2e-3, -0.6, 46.4, ((0.02, 0.1, 0.01, "mappm run cases/a/case.toml"), (2e-3, 4.0, 0.01, "mappm run b.toml")))
-    without = Front("Other", None, 0.05, None, None, ((0.05, 3.0, 0.0, "python3 -m verification run a --code other"),))
+    front = Front("mappm", "MaPPM", 0.5, 2e-3, -0.6, 46.4, ((0.02, 0.1, 0.01, "mappm run cases/a/case.toml"), (2e-3, 4.0, 0.01, "mappm run b.toml")))
+    without = Front("other", "Other", None, 0.05, None, None, ((0.05, 3.0, 0.0, "python3 -m verification run a --code other"),))
     return _shown(figure) | {
         "precision": [Precision("a.precision", "What it costs.", 5, 6, figure, (front, without))],
         "maps": [Map("a.map", "Where it fails.", figure, ((RIGHT, 3, ABOUT[RIGHT]), (WRONG, 1, ABOUT[WRONG])), (("+9.0 %", "mappm run c.toml"),))],

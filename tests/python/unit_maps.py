@@ -39,17 +39,11 @@ refine = 1
 [[study.block]]
 factors = { "run.step_factor" = [0.5, 1.0, 2.0], N = [8, 12] }
 """
-CASE = Path(__file__).resolve().parents[2] / "cases" / "shear_wave"
 
 
 @pytest.fixture
-def study_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    folder = tmp_path / "cases" / "shear_wave"
-    folder.mkdir(parents=True)
-    for name in ("case.toml", "measure.py"):
-        (folder / name).write_text((CASE / name).read_text())
-    monkeypatch.setenv("MAPPM_CASES", str(tmp_path / "cases"))
-    file = folder / "study_where.toml"
+def study_file(shear_wave: Path) -> Path:
+    file = shear_wave / "study_where.toml"
     file.write_text(MAP)
     return file
 

@@ -14,8 +14,8 @@ from verification.codes.code import find_code
 from verification.protocol.errors import SolverError
 from verification.report.precision_chart import draw_precision
 from verification.store.laboratory import Laboratory
-from verification.studies.precision import Point, digit_of, front_of, line_of, points_of, price_of, slope_of
-from verification.studies.study import find_study, read_study, results_of, run_study
+from verification.studies.precision import Point, digit_of, front_of, points_of, price_of, slope_of
+from verification.studies.study import command_of, find_study, read_study, results_of, run_study
 from verification.suite import runner
 
 STUDY = """
@@ -28,7 +28,6 @@ name = "spacing"
 codes = ["exact"]
 factors = { N = [8, 16], "fluid.disorder" = [{ amplitude = 0.1, seed = 1 }, { amplitude = 0.1, seed = 2 }] }
 """
-CASE = Path(__file__).resolve().parents[2] / "cases" / "shear_wave"
 
 
 def point(error: float, seconds: float, *more: float, objection: str = "") -> Point:
@@ -36,13 +35,8 @@ def point(error: float, seconds: float, *more: float, objection: str = "") -> Po
 
 
 @pytest.fixture
-def study_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    folder = tmp_path / "cases" / "shear_wave"
-    folder.mkdir(parents=True)
-    for name in ("case.toml", "measure.py"):
-        (folder / name).write_text((CASE / name).read_text())
-    monkeypatch.setenv("MAPPM_CASES", str(tmp_path / "cases"))
-    file = folder / "study_cost.toml"
+def study_file(shear_wave: Path) -> Path:
+    file = shear_wave / "study_cost.toml"
     file.write_text(STUDY)
     return file
 
@@ -125,6 +119,6 @@ def test_the_line_of_a_point_gives_its_scene() -> None:
     study = find_study("taylor_green.precision")
     setting = ("N=32", "rcut_over_dx=3")
     job = runner.Job(study.case, setting, find_code("mappm"))
-    line = line_of(study, Point("", setting, job.code, job))
+    line = command_of(study, job)
     assert line.startswith("mappm run cases/taylor_green/case.toml --set ")
     assert "--set fluid.spacing=0.03125" in line and "--set fluid.rcut=0.09375" in line

@@ -11,7 +11,6 @@ from verification.protocol.errors import CaseError
 from verification.store.laboratory import Laboratory
 from verification.studies.study import all_studies, find_study, lines_of, read_study, results_of, run_study, trials_of
 
-CASE = Path(__file__).resolve().parents[2] / "cases" / "shear_wave" / "case.toml"
 FACTORIAL = """
 [study]
 purpose = "to see"
@@ -33,14 +32,9 @@ factors = { N = [16, 32], rcut_over_dx = [3] }
 
 
 @pytest.fixture
-def study_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def study_file(shear_wave: Path) -> Path:
     """Where a study of a copy of the shear wave may be written."""
-    folder = tmp_path / "cases" / "shear_wave"
-    folder.mkdir(parents=True)
-    for name in ("case.toml", "measure.py"):
-        (folder / name).write_text((CASE.parent / name).read_text())
-    monkeypatch.setenv("MAPPM_CASES", str(tmp_path / "cases"))
-    return folder / "study_some.toml"
+    return shear_wave / "study_some.toml"
 
 
 def test_factorial_and_one_at_a_time(study_file: Path) -> None:

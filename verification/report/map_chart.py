@@ -11,7 +11,7 @@ from verification.report.canvas import figure_of
 from verification.report.figure import Figure, csv_of
 from verification.studies.classes import ABOUT, BLOWN_UP, CLASSES, CLUMPED, DRIFTING, JAMMED, LEAKED, NO_VALUE, REFUSED, RIGHT, WRONG
 from verification.studies.grid import place_of
-from verification.studies.study import Result, Study, all_studies, command_of, read_study, results_of
+from verification.studies.study import Result, Study, charted, command_of
 from verification.suite.runner import Shelf
 
 # Told apart by marks without colour; the colours are those of Okabe and Ito (2008), which the colour-blind tell apart.
@@ -87,8 +87,4 @@ def draw_map(study: Study, results: list[Result], file: Path) -> Map:
 
 def maps(shelf: Shelf, page: Path) -> list[Map]:
     """Of all studies that ask for one and have runs."""
-    found = []
-    for study in map(read_study, all_studies()):
-        if study.chart == "map" and (results := results_of(shelf, study)):
-            found.append(draw_map(study, results, page / f"{study.name}.svg"))
-    return found
+    return [draw_map(study, results, page / f"{study.name}.svg") for study, results in charted(shelf, "map")]

@@ -7,26 +7,13 @@ from pathlib import Path
 from verification.report.canvas import BLUE, DARK, GREEN, GREY, figure_of
 from verification.report.figure import Figure, csv_of
 from verification.store.store import Store
-from verification.studies.precision import (
-    HEAD,
-    Point,
-    by_code,
-    digit_of,
-    floor_of,
-    front_of,
-    line_of,
-    points_of,
-    price_of,
-    rows_of,
-    slope_of,
-)
-from verification.studies.study import Result, Study, all_studies, read_study, results_of
+from verification.studies.precision import ASKED, HEAD, Front, Point, by_code, floor_of, front_of, fronts_of, points_of, rows_of
+from verification.studies.study import Result, Study, charted
 from verification.suite.runner import Shelf
 
 ORANGE, PURPLE = "#c96a00", "#7a4a9c"
 LOOKS = {"mappm": (BLUE, "-"), "openfoam": (DARK, "--"), "lammps": (ORANGE, "-."), "pysph": (GREEN, ":"), "liggghts": (PURPLE, (0, (1, 3)))}
 OWN_MARKS, MARKS = "os^vDP*X<>", {"openfoam": "s", "lammps": "^", "pysph": "D", "liggghts": "v"}
-ASKED = 0.01  # the error whose price is read off
 LEAST = 1e-6  # of an error, that a logarithmic axis can show
 
 
@@ -100,18 +87,6 @@ def is_absolute(study: Study) -> bool:
 
 
 @dataclass(frozen=True)
-class Front:
-    """Of one code: its cheapest settings, and what they cost."""
-
-    code: str
-    price: float | None  # core-seconds for ASKED; None where no setting comes so far
-    least: float  # error, or the floor where it is below that
-    slope: float | None
-    digit: float | None  # times the cost for a tenth of the error
-    lines: tuple[tuple[float, float, float, str], ...]  # error, core-seconds, those of set-up, command
-
-
-@dataclass(frozen=True)
 class Precision:
     """The chart of a study, and what is read off it."""
 
@@ -123,15 +98,6 @@ class Precision:
     fronts: tuple[Front, ...]
 
 
-def _front(study: Study, points: list[Point], floor: float) -> Front | None:
-    front = front_of(points, floor)
-    if not front:
-        return None
-    slope = slope_of(front, floor)
-    return Front(points[0].code.title, price_of(front, ASKED, floor), max(front[-1].error, floor), slope, digit_of(slope),
-                 tuple((point.error, point.cost, point.setup, line_of(study, point)) for point in front))
-
-
 def draw_precision(store: Store, study: Study, results: list[Result], file: Path) -> Precision:
     """Writes the chart and, beside it, its CSV."""
     points, floor = points_of(store, results), floor_of(results)
@@ -140,18 +106,13 @@ def draw_precision(store: Store, study: Study, results: list[Result], file: Path
         _draw(axes, study, points, floor)
     text = csv_of(HEAD, rows_of(study, points, floor))
     file.with_suffix(".csv").write_text(text)
-    fronts = (_front(study, members, floor) for members in by_code(points).values())
     made = sum(result.entry is not None for result in results)
     machines = ", ".join(dict.fromkeys(point.machine for point in points if point.machine))
     caption = f"{study.name}: {'error' if is_absolute(study) else 'relative error'} of {study.observable.symbol} over core-seconds on {machines}."
     figure = Figure(file, caption, text, f"python3 -m verification study {study.name}")
-    return Precision(study.name, study.purpose, made, len(study.runs), figure, tuple(one for one in fronts if one))
+    return Precision(study.name, study.purpose, made, len(study.runs), figure, tuple(fronts_of(study, points, floor)))
 
 
 def precision_charts(shelf: Shelf, page: Path) -> list[Precision]:
     """Of all studies that ask for one and have runs."""
-    found = []
-    for study in map(read_study, all_studies()):
-        if study.chart == "precision" and (results := results_of(shelf, study)):
-            found.append(draw_precision(shelf.store, study, results, page / f"{study.name}.svg"))
-    return found
+    return [draw_precision(shelf.store, study, results, page / f"{study.name}.svg") for study, results in charted(shelf, "precision")]

@@ -2,6 +2,7 @@
 
 import math
 import statistics
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,7 @@ from verification.store.store import Store
 from verification.studies.study import Result, Setting, Study, command_of
 from verification.suite.runner import Job
 
+ASKED = 0.01  # the error whose price is told
 WIDE = 10.0  # ratio of costs that a front must span for a slope
 
 
@@ -133,23 +135,39 @@ def price_of(front: list[Point], error: float, floor: float = 0.0) -> float | No
     return math.exp(math.log(low.cost) + share * math.log(high.cost / low.cost))
 
 
-def line_of(study: Study, point: Point) -> str:
-    return command_of(study, point.job)
+@dataclass(frozen=True)
+class Front:
+    """Of one code: its cheapest settings, and what they cost."""
+
+    name: str
+    title: str
+    price: float | None  # core-seconds for ASKED; None where no setting comes so far
+    least: float  # error, or the floor where it is below that
+    slope: float | None
+    digit: float | None  # times the cost for a tenth of the error
+    lines: tuple[tuple[float, float, float, str], ...]  # error, core-seconds, those of set-up, command
 
 
-def lines_of_fronts(study: Study, points: list[Point], floor: float) -> list[str]:
-    """The front of each code, what an error of 1 % costs, its slope, and what one digit more costs."""
-    lines = []
+def fronts_of(study: Study, points: list[Point], floor: float) -> list[Front]:
+    """Of the codes that have one."""
+    found = []
     for name, members in by_code(points).items():
-        front = front_of(members, floor)
-        if not front:
-            continue
-        slope, price = slope_of(front, floor), price_of(front, 0.01, floor)
-        costs = f"1 % costs {price:.3g} core-seconds" if price is not None else f"1 % is not reached; the least is {100 * front[-1].error:.2g} %"
-        digit = f", slope {slope:.2g}, one digit more {digit_of(slope):.3g} times as much" if slope is not None else ""
-        lines.append(f"front of {name}: {costs}{digit}")
-        lines += [f"  {100 * point.error:8.3g} %  {point.cost:8.3g} s and {point.setup:.2g} s of set-up  {line_of(study, point)}"
-                  for point in front]
+        if front := front_of(members, floor):
+            slope = slope_of(front, floor)
+            lines = tuple((point.error, point.cost, point.setup, command_of(study, point.job)) for point in front)
+            found.append(Front(name, front[0].code.title, price_of(front, ASKED, floor), max(front[-1].error, floor), slope,
+                               digit_of(slope), lines))
+    return found
+
+
+def lines_of_fronts(fronts: Iterable[Front]) -> list[str]:
+    """What an error of 1 % costs, the slope, what one digit more costs, and the settings."""
+    lines = []
+    for front in fronts:
+        reached = f"1 % costs {front.price:.3g} core-seconds" if front.price is not None else ""
+        digit = f", slope {front.slope:.2g}, one digit more {front.digit:.3g} times as much" if front.slope is not None else ""
+        lines.append(f"front of {front.name}: {reached or f'1 % is not reached; the least is {100 * front.lines[-1][0]:.2g} %'}{digit}")
+        lines += [f"  {100 * error:8.3g} %  {cost:8.3g} s and {setup:.2g} s of set-up  {line}" for error, cost, setup, line in front.lines]
     return lines
 
 
@@ -161,8 +179,8 @@ def by_code(points: list[Point]) -> dict[str, list[Point]]:
     return found
 
 
-HEAD = ("code", "block", "setting", "error", "signed error of the first start", "least error", "largest error", "core-seconds", "least core-seconds", "most core-seconds",
-        "set-up core-seconds", "starts", "timings", "on the front", "why no value, or no trust", "commit", "machine", "command")
+HEAD = ("code", "block", "setting", "error", "signed error of the first start", "least error", "largest error", "core-seconds",
+        "least core-seconds", "most core-seconds", "set-up core-seconds", "starts", "timings", "on the front", "why no value, or no trust", "commit", "machine", "command")
 
 
 def rows_of(study: Study, points: list[Point], floor: float) -> list[tuple]:
@@ -175,5 +193,5 @@ def rows_of(study: Study, points: list[Point], floor: float) -> list[tuple]:
         rows.append((point.code.name, point.block, " ".join(point.setting) or "as declared", point.error,
                      point.errors[0] if point.errors else math.nan, low, high, point.cost, least, most,
                      point.setup, len(point.errors), len(point.seconds), "yes" if id(point) in on_front else "no",
-                     point.why or point.objection, point.commit, point.machine, line_of(study, point)))
+                     point.why or point.objection, point.commit, point.machine, command_of(study, point.job)))
     return rows

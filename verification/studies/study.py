@@ -4,7 +4,7 @@ import itertools
 import math
 import shlex
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -51,7 +51,6 @@ class Block:
 @dataclass(frozen=True)
 class Study:
     name: str  # CASE.NAME
-    file: Path
     case: Case
     purpose: str
     observable: Observable  # the one that is judged
@@ -192,7 +191,7 @@ def read_study(file: Path) -> Study:
         refuse(where, "refine", refine, 'write a whole number of rounds, of a study with chart = "map"')
     if table.get("chart") == "map":
         _check_map(where, made)
-    study = Study(name, file, points[0], " ".join(str(table.get("purpose", "")).split()), _observable(where, points[0], table),
+    study = Study(name, points[0], " ".join(str(table.get("purpose", "")).split()), _observable(where, points[0], table),
                   table.get("chart", ""), refine, tuple(made))
     for _, setting in study.runs:
         scene_of(study.case, study.case.base + setting)
@@ -338,6 +337,13 @@ def _results(shelf: Shelf, study: Study) -> list[Result]:
         elif why:
             found.append(Result(trial.block, trial.setting, job.code, job, why=why))
     return found
+
+
+def charted(shelf: Shelf, chart: str) -> Iterator[tuple[Study, list[Result]]]:
+    """The studies that ask for a kind of chart and have runs."""
+    for study in map(read_study, all_studies()):
+        if study.chart == chart and (results := results_of(shelf, study)):
+            yield study, results
 
 
 def command_of(study: Study, job: Job) -> str:
