@@ -28,10 +28,10 @@ def show(store: Store, start: str) -> int:
     if len(found) != 1:
         raise CaseError(f"{start}: {len(found)} runs have a key that starts so; `store list` prints them")
     (run,) = found
-    print(f"{run.label}\n{_code_of(run)}, made {run.made.made[:19]} on {run.made.machine}, source {run.made.source}\n{run.made.command}")
+    print(f"{run.label}\n{_code_of(run)}, made {run.made.when} on {run.made.machine}, source {run.made.source}\n{run.made.command}")
     for made, cost in store.costs(run.key):
         print(f"took {cost.core_seconds:.3g} core-seconds and {cost.setup_core_seconds:.3g} to set up, {cost.wall_seconds:.3g} s on "
-              f"{cost.cores} cores, {cost.peak_memory / 2**20:.0f} MiB, {made.made[:19]} on {made.machine}")
+              f"{cost.cores} cores, {cost.peak_memory / 2**20:.0f} MiB, {made.when} on {made.machine}")
     for measure, name, one in store.all_found(run.key):
         print(f"{name} = {one.value:.10g} +- {one.uncertainty:.2g}{' (' + one.objection + ')' if one.objection else ''}, measure {measure}")
     print(json.dumps({"scene": run.scene, "options": run.options, "steps": run.steps}, indent=1))

@@ -48,6 +48,11 @@ class Made:
     source: str  # commit
     command: str = ""
 
+    @property
+    def when(self) -> str:
+        """To the second, for people."""
+        return self.made[:19]
+
 
 @dataclass(frozen=True)
 class Cost:
